@@ -1,0 +1,5 @@
+//! pathspace: a Vulkan ray-query path tracer that measures what accuracy costs in time.
+//!
+//! The modules are listed in the order of the data: a scene comes in, a picture goes out.
+
+pub mod scene;
