@@ -1,1 +1,78 @@
-fn main() {}
+//! Compiles every variant of every kernel in parallel, keeps what has not changed, and writes what the crate includes:
+//! `shaders.rs` (embedded SPIR-V), `shared.rs` (structs of shaders_glsl/shared) and `parameters.rs`.
+
+use rayon::prelude::*;
+use shader_compiler::{CompileError, Variant, layout, parameters, reflect};
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+const SHADER_DIR: &str = "shaders_glsl";
+/// Files whose structs and constants both sides use.
+const SHARED: [&str; 2] = ["shared/scene.glsl", "shared/parameters.glsl"];
+
+fn main() {
+    println!("cargo:rerun-if-changed={SHADER_DIR}");
+    println!("cargo:rerun-if-changed=build.rs");
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    if let Err(error) = generate(Path::new(SHADER_DIR), &out) {
+        eprintln!("{error}");
+        std::process::exit(1);
+    }
+}
+
+fn generate(root: &Path, out: &Path) -> Result<(), CompileError> {
+    let variants = shader_compiler::find_variants(root)?;
+    let modules: Vec<(PathBuf, Vec<u32>)> =
+        variants.par_iter().map(|variant| compile_if_changed(root, out, variant)).collect::<Result<_, _>>()?;
+    let rows = variants.iter().zip(&modules).map(|(variant, (path, _))| {
+        format!("    Shader {{ stem: {:?}, structure: {:?}, spirv: include_bytes!({:?}) }},\n", variant.stem, variant.structure, path)
+    });
+    write(&out.join("shaders.rs"), format!("&[\n{}]", rows.collect::<String>()).as_bytes())?;
+    write_shared(root, out, modules.iter().map(|(_, spirv)| spirv.as_slice()))?;
+    let path = root.join("shared/parameters.glsl");
+    let table = parameters::parse(&read(&path)?).map_err(|message| layout_error(&path, message))?;
+    write(&out.join("parameters.rs"), parameters::host_source(&table).as_bytes())
+}
+
+fn compile_if_changed(root: &Path, out: &Path, variant: &Variant) -> Result<(PathBuf, Vec<u32>), CompileError> {
+    let stem = variant.name().replace('/', ".");
+    let path = out.join(format!("{stem}-{:016x}.spv", shader_compiler::fingerprint(root, variant)?));
+    if let Ok(bytes) = fs::read(&path) {
+        return Ok((path, words(&bytes)));
+    }
+    let spirv = shader_compiler::compile_variant(root, variant)?;
+    write(&path, &spirv.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>())?;
+    Ok((path, spirv))
+}
+
+fn write_shared<'a>(root: &Path, out: &Path, modules: impl Iterator<Item = &'a [u32]>) -> Result<(), CompileError> {
+    let (mut structs, mut constants) = (Vec::new(), Vec::new());
+    for file in SHARED {
+        let (s, c) = layout::parse(&read(&root.join(file))?);
+        structs.extend(s);
+        constants.extend(c);
+    }
+    let mut source = String::new();
+    let mut offsets = reflect::StructOffsets::new();
+    for spirv in modules {
+        offsets.extend(reflect::struct_offsets(spirv).map_err(|message| layout_error(root, message))?);
+    }
+    source += &layout::host_source(&structs, &constants, &offsets).map_err(|message| layout_error(&root.join("shared"), message))?;
+    write(&out.join("shared.rs"), source.as_bytes())
+}
+
+fn words(bytes: &[u8]) -> Vec<u32> {
+    bytes.chunks_exact(4).map(|c| u32::from_le_bytes(c.try_into().expect("four bytes"))).collect()
+}
+
+fn layout_error(path: &Path, message: String) -> CompileError {
+    CompileError::Layout { name: path.display().to_string(), message }
+}
+
+fn read(path: &Path) -> Result<String, CompileError> {
+    fs::read_to_string(path).map_err(|source| CompileError::Read { path: path.to_owned(), source })
+}
+
+fn write(path: &Path, content: &[u8]) -> Result<(), CompileError> {
+    fs::write(path, content).map_err(|source| CompileError::Read { path: path.to_owned(), source })
+}

@@ -3,3 +3,4 @@
 //! The modules are listed in the order of the data: a scene comes in, a picture goes out.
 
 pub mod scene;
+pub mod shared;

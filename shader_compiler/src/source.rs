@@ -1,0 +1,117 @@
+//! Which kernels there are, in which variants, and when one has changed.
+
+use crate::CompileError;
+use std::collections::BTreeSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::{Path, PathBuf};
+
+/// A kernel that traces rays is compiled once per acceleration structure.
+const TRACE_INCLUDE: &str = "accel/trace.glsl";
+const STRUCTURES: &str = "accel/structures";
+
+/// One compilation of one kernel.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Variant {
+    /// Relative to the shader directory, for example `paths/megakernel.comp`.
+    pub file: PathBuf,
+    /// Without the extension: `paths/megakernel`.
+    pub stem: String,
+    /// File stem of the acceleration structure, for kernels that trace rays.
+    pub structure: Option<String>,
+}
+
+impl Variant {
+    /// For messages and file names: `paths/megakernel`, or `paths/megakernel+bvh`.
+    pub fn name(&self) -> String {
+        match &self.structure {
+            Some(structure) => format!("{}+{structure}", self.stem),
+            None => self.stem.clone(),
+        }
+    }
+
+    pub fn defines(&self) -> Vec<(String, String)> {
+        self.structure.as_deref().map(structure_defines).unwrap_or_default()
+    }
+}
+
+/// What selects an acceleration structure in `accel/trace.glsl`.
+pub fn structure_defines(structure: &str) -> Vec<(String, String)> {
+    vec![
+        ("ACCEL_FILE".to_owned(), format!("\"{STRUCTURES}/{structure}.glsl\"")),
+        (format!("ACCEL_{}", structure.to_uppercase()), "1".to_owned()),
+    ]
+}
+
+/// Every variant of every `*.comp` below `root`, sorted by name.
+pub fn find_variants(root: &Path) -> Result<Vec<Variant>, CompileError> {
+    let structures: Vec<String> = files_below(&root.join(STRUCTURES), "glsl")?
+        .iter()
+        .filter_map(|path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned()))
+        .collect();
+    let mut variants = Vec::new();
+    for path in files_below(root, "comp")? {
+        let file = path.strip_prefix(root).expect("found below root").to_owned();
+        let stem = file.with_extension("").to_string_lossy().replace('\\', "/");
+        let traces = transitive_includes(root, &path)?.contains(Path::new(TRACE_INCLUDE));
+        let structures = if traces { structures.iter().cloned().map(Some).collect() } else { vec![None] };
+        variants.extend(structures.into_iter().map(|structure| Variant { file: file.clone(), stem: stem.clone(), structure }));
+    }
+    variants.sort_by_key(Variant::name);
+    Ok(variants)
+}
+
+/// Changes when the kernel, or anything that it includes, changes.
+pub fn fingerprint(root: &Path, variant: &Variant) -> Result<u64, CompileError> {
+    let mut hasher = DefaultHasher::new();
+    crate::PREAMBLE.hash(&mut hasher);
+    variant.defines().hash(&mut hasher);
+    let path = root.join(&variant.file);
+    read(&path)?.hash(&mut hasher);
+    let mut includes = transitive_includes(root, &path)?;
+    if let Some(structure) = &variant.structure {
+        let file = PathBuf::from(format!("{STRUCTURES}/{structure}.glsl"));
+        includes.extend(transitive_includes(root, &root.join(&file))?);
+        includes.insert(file);
+    }
+    for include in includes {
+        read(&root.join(include))?.hash(&mut hasher);
+    }
+    Ok(hasher.finish())
+}
+
+/// Files named by `#include "..."`, relative to `root`, followed through. Includes by macro are not seen.
+fn transitive_includes(root: &Path, path: &Path) -> Result<BTreeSet<PathBuf>, CompileError> {
+    let mut found = BTreeSet::new();
+    let mut pending = vec![path.to_owned()];
+    while let Some(path) = pending.pop() {
+        for line in read(&path)?.lines() {
+            let Some(name) = line.trim().strip_prefix("#include \"").and_then(|rest| rest.split('"').next()) else { continue };
+            if found.insert(PathBuf::from(name)) {
+                pending.push(root.join(name));
+            }
+        }
+    }
+    Ok(found)
+}
+
+fn files_below(directory: &Path, extension: &str) -> Result<Vec<PathBuf>, CompileError> {
+    let error = |source| CompileError::Read { path: directory.to_owned(), source };
+    let mut files = Vec::new();
+    if !directory.exists() {
+        return Ok(files);
+    }
+    for entry in std::fs::read_dir(directory).map_err(error)? {
+        let path = entry.map_err(error)?.path();
+        if path.is_dir() {
+            files.extend(files_below(&path, extension)?);
+        } else if path.extension().is_some_and(|e| e == extension) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn read(path: &Path) -> Result<String, CompileError> {
+    std::fs::read_to_string(path).map_err(|source| CompileError::Read { path: path.to_owned(), source })
+}
