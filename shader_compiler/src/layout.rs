@@ -80,7 +80,8 @@ fn host_type(ty: &str, sizes: &HashMap<String, u32>) -> Result<(String, u32), St
         "float" => ("f32".to_owned(), 4),
         "uint" => ("u32".to_owned(), 4),
         "int" => ("i32".to_owned(), 4),
-        "uint64_t" => ("u64".to_owned(), 8),
+        // A uvec2 in the shader, for devices without 64-bit integers.
+        "Address" => ("u64".to_owned(), 8),
         "vec2" => vector("f32", 2),
         "vec3" => vector("f32", 3),
         "vec4" => vector("f32", 4),

@@ -7,9 +7,7 @@
 #include "shared/effects.glsl"
 
 layout(set = 0, binding = 0, scalar) uniform FrameBlock { FrameData frame; Parameters parameters; };
-#ifdef PATHSPACE_TEXTURES
 layout(set = 0, binding = 1) uniform sampler2D textures[];
-#endif
 #ifdef ACCEL_RAY_QUERY
 layout(set = 0, binding = 2) uniform accelerationStructureEXT top_level;
 #endif

@@ -1,5 +1,8 @@
 // What a scene calls for (src/scene/effects.rs decides, and says why): a specialization constant each, so that what is not called for
 // costs nothing.
+#ifndef SHARED_EFFECTS_GLSL
+#define SHARED_EFFECTS_GLSL
+
 layout(constant_id = 0) const bool EFFECT_GLOSSY = true;
 layout(constant_id = 1) const bool EFFECT_MIRROR = true;
 layout(constant_id = 2) const bool EFFECT_SMOOTH_TRANSMISSION = true;
@@ -17,3 +20,5 @@ layout(constant_id = 13) const bool EFFECT_CAMERA_ANIMATION = true;
 layout(constant_id = 14) const bool EFFECT_OBJECT_ANIMATION = true;
 layout(constant_id = 15) const bool EFFECT_UNLIT = true;
 layout(constant_id = 16) const bool EFFECT_VERTEX_COLORS = true;
+
+#endif

@@ -8,6 +8,9 @@
 // values count from 0 in the order given. Constants are specialization constants (a change compiles a new pipeline);
 // fields of Parameters are read at run time.
 
+#ifndef SHARED_PARAMETERS_GLSL
+#define SHARED_PARAMETERS_GLSL
+
 //@ rays.intersection watertight watertight|moller-trumbore
 /// Ray-triangle test of the BVH structures. Watertight (Woop et al. 2013) leaves no gaps along shared edges; Moeller-Trumbore is a little faster.
 layout(constant_id = 100) const uint INTERSECTION = 0;
@@ -47,3 +50,5 @@ struct Parameters {
     /// Added to the ray-cone level of detail of every texture. Negative is sharper and noisier.
     float lod_bias;
 };
+
+#endif

@@ -1,22 +1,29 @@
 // The scene as shaders see it. Scalar layout everywhere; the host's structs are generated from this file when built.
-// Addresses are buffer device addresses, 0 where there is nothing.
+// Addresses are buffer device addresses, 0 where there is nothing, as two words: SwiftShader has no 64-bit integers. The host sees u64.
+
+#ifndef SHARED_SCENE_GLSL
+#define SHARED_SCENE_GLSL
+
+#define Address uvec2
+/// Whether an address points at anything.
+#define HAS(address) any(notEqual(address, uvec2(0)))
 
 /// One mesh: one bottom-level structure.
 struct Mesh {
     /// vec3 per vertex, mesh space, metres.
-    uint64_t positions;
+    Address positions;
     /// VertexAttributes per vertex.
-    uint64_t attributes;
+    Address attributes;
     /// vec2 per vertex, or 0.
-    uint64_t uv1;
+    Address uv1;
     /// u16x4 (RGBA, unorm) per vertex, linear, or 0.
-    uint64_t colors;
+    Address colors;
     /// uvec3 per triangle.
-    uint64_t triangles;
+    Address triangles;
     /// uint per triangle: index into materials.
-    uint64_t triangle_materials;
+    Address triangle_materials;
     /// uint per triangle: its rank among the mesh's emissive triangles, ~0u where it emits nothing; 0 if none emits.
-    uint64_t triangle_emitters;
+    Address triangle_emitters;
 };
 
 /// 16 bytes.
@@ -153,19 +160,19 @@ struct Camera {
 
 /// What every shader may read: one uniform buffer per frame in flight, set 0 binding 0.
 struct FrameData {
-    uint64_t meshes;
-    uint64_t instances;
-    uint64_t materials;
-    uint64_t lights;
-    uint64_t light_alias;
+    Address meshes;
+    Address instances;
+    Address materials;
+    Address lights;
+    Address light_alias;
     /// AliasEntry per texel of the environment map, or 0.
-    uint64_t environment_alias;
+    Address environment_alias;
     /// vec4 per texel of the environment map: radiance, probability density over the unit square; or 0.
-    uint64_t environment_texels;
+    Address environment_texels;
     /// The acceleration structure's own root: what its GLSL file says.
-    uint64_t accel;
+    Address accel;
     /// EnergyTables of lib/energy.glsl (float[]), or 0.
-    uint64_t energy_tables;
+    Address energy_tables;
     uint light_count;
     /// Index of the environment in lights, ~0u if it does not shine.
     uint environment_light;
@@ -188,3 +195,5 @@ struct FrameData {
     vec2 jitter;
     uint padding;
 };
+
+#endif
