@@ -3,5 +3,6 @@
 //! The modules are listed in the order of the data: a scene comes in, a picture goes out.
 
 pub mod cli;
+pub mod display;
 pub mod scene;
 pub mod shared;

@@ -1,5 +1,6 @@
 //! Files and results that leave the program: whole, or not at all.
 
+use crate::display::{ExrContents, ToneMapping};
 use anyhow::{Context, bail};
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -17,6 +18,18 @@ where
     let file = file.into_inner().map_err(|error| error.into_error()).with_context(cannot_write)?;
     file.persist(path).map_err(|error| error.error).with_context(cannot_write)?;
     Ok(())
+}
+
+/// Writes an .exr with all of `contents`, or a .png of its main image. Non-finite values are reported and become 0.
+pub fn write_picture(path: &Path, contents: &ExrContents, mapping: &ToneMapping) -> anyhow::Result<()> {
+    let shown = path.display();
+    let image = contents.image.made_finite(&format!("'{shown}'"));
+    let beside: Vec<_> = contents.beside.iter().map(|(name, image)| (*name, image.made_finite(&format!("'{shown}', {name}")))).collect();
+    let beside: Vec<_> = beside.iter().map(|(name, image)| (*name, image.as_ref())).collect();
+    write_atomically(path, |file| match path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        true => image.write_png(mapping, file),
+        false => ExrContents { image: &image, beside: &beside, ..*contents }.write(file),
+    })
 }
 
 /// Finds out before the long work whether all of `paths` can be written, and that no two are one file.
@@ -64,6 +77,7 @@ fn temporary_beside(path: &Path) -> anyhow::Result<NamedTempFile> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::display::Image;
 
     #[test]
     fn a_failed_write_leaves_the_old_file_and_nothing_else() {
@@ -77,6 +91,18 @@ mod tests {
         assert!(format!("{:#}", failed.unwrap_err()).contains("interrupted"));
         assert_eq!(std::fs::read(&path).unwrap(), b"old");
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn pictures_are_written_by_their_extension_and_finite() {
+        let directory = tempfile::tempdir().unwrap();
+        let image = Image::new(2, 1, vec![[0.5; 3], [f32::NAN; 3]]);
+        let contents = ExrContents { image: &image, beside: &[], attributes: &[] };
+        for name in ["a.exr", "a.PNG"] {
+            let path = directory.path().join(name);
+            write_picture(&path, &contents, &ToneMapping::default()).unwrap();
+            assert_eq!(Image::read(&path).unwrap().pixels[1], [0.0; 3]);
+        }
     }
 
     #[test]

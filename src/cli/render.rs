@@ -2,6 +2,7 @@
 
 use super::Outcome;
 use super::arguments::{self, Size};
+use crate::display::{ToneCurve, ToneMapping};
 use std::path::{Path, PathBuf};
 
 /// Render a glTF scene, or a built-in one, to EXR and PNG files
@@ -68,7 +69,7 @@ pub struct Args {
     pub exposure: f32,
     /// Tone curve of PNG files
     #[arg(long, value_enum, default_value = "aces")]
-    pub tonemap: Tonemap,
+    pub tonemap: ToneCurve,
     /// Effects to compile in: what the scene calls for, or all of them; the picture is the same
     #[arg(long, value_enum, default_value = "auto")]
     pub effects: EffectChoice,
@@ -78,18 +79,17 @@ pub struct Args {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Tonemap {
-    Aces,
-    None,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum EffectChoice {
     Auto,
     All,
 }
 
 impl Args {
+    /// For PNG outputs.
+    pub fn tone_mapping(&self) -> ToneMapping {
+        ToneMapping { exposure: self.exposure, curve: self.tonemap }
+    }
+
     /// Every file that the command writes.
     fn outputs(&self) -> impl Iterator<Item = &Path> {
         self.output.iter().chain(self.aov.iter().map(|(_, path)| path)).chain(&self.timings).map(PathBuf::as_path)
