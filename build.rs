@@ -8,7 +8,7 @@ use std::{env, fs};
 
 const SHADER_DIR: &str = "shaders_glsl";
 /// Files whose structs and constants both sides use.
-const SHARED: [&str; 2] = ["shared/scene.glsl", "shared/parameters.glsl"];
+const SHARED: [&str; 3] = ["shared/scene.glsl", "shared/bvh.glsl", "shared/parameters.glsl"];
 
 fn main() {
     println!("cargo:rerun-if-changed={SHADER_DIR}");

@@ -2,6 +2,7 @@
 //!
 //! The modules are listed in the order of the data: a scene comes in, a picture goes out.
 
+pub mod accel;
 pub mod cli;
 pub mod display;
 pub mod scene;
