@@ -5,5 +5,6 @@
 pub mod accel;
 pub mod cli;
 pub mod display;
+pub mod metrics;
 pub mod scene;
 pub mod shared;
