@@ -1,3 +1,7 @@
-//! What must hold whatever the input.
+//! What must hold whatever the input, each property named by its test.
 
+#[path = "../common/mod.rs"]
+mod common;
+
+mod gpu_kernel;
 mod metrics;
