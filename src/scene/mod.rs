@@ -6,15 +6,19 @@
 
 pub mod animation;
 pub mod builtin;
+pub mod camera;
 pub mod effects;
 pub mod environment;
+pub mod error;
 pub mod gltf;
 pub mod material;
 pub mod texture;
 pub mod transform;
 
 pub use animation::Animation;
+pub use camera::{CameraView, UnknownCamera};
 pub use environment::Environment;
+pub use error::{LoadError, Problem};
 pub use material::{AlphaMode, Material, TextureRef};
 pub use texture::Texture;
 pub use transform::{Local, Node};

@@ -1,6 +1,6 @@
 //! Node transforms, composed in double precision, so that a scene placed 10^6 m away keeps its millimetres.
 
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat3, DMat4, DQuat, DVec3};
 
 #[derive(Debug, Clone)]
 pub struct Node {
@@ -37,4 +37,18 @@ pub fn world_transforms(nodes: &[Node], locals: &[Local]) -> Vec<DMat4> {
         });
     }
     world
+}
+
+/// Whether a mesh placed by `world` has an area and an inverse in single precision. Not so where a scale is zero, even on one axis:
+/// such a mesh is no surface with two sides any more, and acceleration structures do not take it.
+pub fn is_invertible(world: &DMat4) -> bool {
+    let linear = DMat3::from_mat4(*world);
+    let lengths = [linear.x_axis.length(), linear.y_axis.length(), linear.z_axis.length()];
+    let volume = linear.determinant().abs() / (lengths[0] * lengths[1] * lengths[2]);
+    world.is_finite() && lengths.iter().all(|length| (1e-18..1e18).contains(length)) && volume > 1e-9
+}
+
+/// A mirrored instance: its triangles wind clockwise as seen from their front.
+pub fn flips_winding(world: &DMat4) -> bool {
+    DMat3::from_mat4(*world).determinant() < 0.0
 }

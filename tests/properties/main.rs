@@ -1,7 +1,3 @@
-//! What must hold whatever the input, each property named by its test.
+//! Properties that hold for whole parts of the program.
 
-#[path = "../common/mod.rs"]
-mod common;
-
-mod gpu_kernel;
-mod metrics;
+mod scene_shared;

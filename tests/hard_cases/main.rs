@@ -1,0 +1,3 @@
+//! Input that is wrong, extreme or hostile.
+
+mod scene_malformed;
