@@ -2,8 +2,11 @@
 //!
 //! The modules are listed in the order of the data: a scene comes in, a picture goes out.
 
-pub mod accel;
 pub mod cli;
-pub mod display;
-pub mod scene;
+pub mod gpu;
 pub mod shared;
+pub mod frame;
+pub mod scene;
+pub mod accel;
+pub mod display;
+pub mod metrics;

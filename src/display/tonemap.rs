@@ -35,16 +35,21 @@ impl ToneMapping {
         })
     }
 
-    /// sRGB-encoded values in [0, 1], as a screen takes them; not quantised.
-    pub fn encoded(&self, image: &Image) -> Vec<[f32; 3]> {
-        image.pixels.par_iter().map(|&pixel| self.display_values(pixel).map(srgb_encode)).collect()
+    /// The same size, its values sRGB-encoded in [0, 1] as a screen takes them; not quantised.
+    pub fn encoded(&self, image: &Image) -> Image {
+        let pixels = image.pixels.par_iter().map(|&pixel| self.display_values(pixel).map(srgb_encode)).collect();
+        Image::new(image.width, image.height, pixels)
     }
 
     /// sRGB bytes, three a pixel, rows from the top.
     pub fn encoded_bytes(&self, image: &Image) -> Vec<u8> {
-        let quantise = |value: f32| (value * 255.0).round() as u8;
-        self.encoded(image).into_iter().flat_map(|pixel| pixel.map(quantise)).collect()
+        quantised(&self.encoded(image))
     }
+}
+
+/// Encoded values in [0, 1] as bytes, three a pixel, rows from the top.
+pub fn quantised(encoded: &Image) -> Vec<u8> {
+    encoded.pixels.iter().flat_map(|pixel| pixel.map(|value| (value * 255.0).round() as u8)).collect()
 }
 
 fn aces(x: f32) -> f32 {

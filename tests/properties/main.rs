@@ -1,3 +1,8 @@
-//! Properties that hold for whole parts of the program.
+//! What must hold whatever the input, each property named by its test.
 
+#[path = "../common/mod.rs"]
+mod common;
+
+mod gpu_kernel;
+mod metrics;
 mod scene_shared;

@@ -1,0 +1,5 @@
+//! The frame: what every kernel sees, passes that declare what they read and write, and the order that follows.
+
+mod globals;
+
+pub use globals::{Globals, GlobalsInfo, globals_layout};
