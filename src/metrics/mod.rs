@@ -27,7 +27,7 @@ use crate::display::Image;
 pub enum MetricError {
     #[error("the picture is {}x{} and the reference {}x{}: render both with one --size", image.0, image.1, reference.0, reference.1)]
     SizesDiffer { image: (u32, u32), reference: (u32, u32) },
-    #[error("the {which} has {count} pixels that are not finite, the first at ({}, {})", first.0, first.1)]
+    #[error("{count} of the {which}'s pixels hold NaN or infinity, the first is ({}, {})", first.0, first.1)]
     NotFinite { which: &'static str, count: usize, first: (u32, u32) },
     #[error("SSIM needs at least 11x11 pixels; these pictures are {}x{}", size.0, size.1)]
     TooSmallForSsim { size: (u32, u32) },
