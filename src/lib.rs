@@ -8,5 +8,6 @@ pub mod shared;
 pub mod frame;
 pub mod scene;
 pub mod accel;
+pub mod paths;
 pub mod display;
 pub mod metrics;

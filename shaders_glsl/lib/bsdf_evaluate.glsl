@@ -27,7 +27,7 @@ Techniques sampling_techniques(Surface s, vec3 wo) {
     p.reflection = EFFECT_REFLECTION ? max_component(reflected) : 0.0;
     p.glass = glass_part(s) * mix(max_component(s.base_color), 1.0, 0.1);
     if (COMPENSATE_ENERGY && EFFECT_REFLECTION) {
-        float lost = 1.0 - ggx_energy(s.alpha, cos_o, 1.0).o.x;
+        float lost = 1.0 - reflected_energy(cos_o, s.alpha).x;
         p.diffuse += lost * (p.reflection + p.glass);
         p.far_diffuse = lost * p.glass;
     }
@@ -45,8 +45,8 @@ float below_clearcoat(Surface s, vec3 wo) {
     }
     float cosine = max(dot(s.clearcoat_normal_ws, wo), 0.0);
     if (COMPENSATE_ENERGY && !clearcoat_is_delta(s)) {
-        vec2 albedo = ggx_energy(s.clearcoat_alpha, cosine, 1.0).o;
-        return 1.0 - s.clearcoat * mix(0.04 * albedo.x, albedo.x, albedo.y / max(albedo.x, 1e-6));
+        vec2 albedo = reflected_energy(cosine, s.clearcoat_alpha);
+        return 1.0 - s.clearcoat * (0.04 * (albedo.x - albedo.y) + albedo.y);
     }
     return 1.0 - clearcoat_fresnel(s, cosine);
 }

@@ -12,6 +12,7 @@ pub mod environment;
 pub mod error;
 pub mod gltf;
 pub mod material;
+pub mod packing;
 pub mod texture;
 pub mod transform;
 

@@ -1,0 +1,3 @@
+//! Light transport: what paths need from the host.
+
+pub mod energy;
