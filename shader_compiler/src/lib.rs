@@ -36,7 +36,8 @@ pub enum CompileError {
     Layout { name: String, message: String },
 }
 
-/// Compiles one kernel. `name` is for messages, includes are relative to `root`, `defines` come before the source.
+/// Compiles one kernel. `name` is for messages, includes are relative to `root`, `defines` come before the source; an include of a
+/// define's name includes the file that it names (glslang does not expand macros there).
 pub fn compile(root: &Path, name: &str, source: &str, defines: &[(String, String)]) -> Result<Vec<u32>, CompileError> {
     let unavailable = |error: shaderc::Error| CompileError::Unavailable(error.to_string());
     let compiler = shaderc::Compiler::new().map_err(unavailable)?;
@@ -49,7 +50,8 @@ pub fn compile(root: &Path, name: &str, source: &str, defines: &[(String, String
         options.add_macro_definition(key, Some(value));
     }
     options.set_include_callback(|requested, _, _, _| {
-        let path = root.join(requested);
+        let named = defines.iter().find(|(key, _)| key == requested).map(|(_, value)| value.trim_matches('"'));
+        let path = root.join(named.unwrap_or(requested));
         let content = std::fs::read_to_string(&path).map_err(|e| format!("cannot read '{}': {e}", path.display()))?;
         Ok(shaderc::ResolvedInclude { resolved_name: requested.to_owned(), content })
     });

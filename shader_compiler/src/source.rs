@@ -79,14 +79,14 @@ pub fn fingerprint(root: &Path, variant: &Variant) -> Result<u64, CompileError> 
     Ok(hasher.finish())
 }
 
-/// Files named by `#include "..."`, relative to `root`, followed through. Includes by macro are not seen.
+/// Files named by `#include "..."`, relative to `root`, followed through. Includes by the name of a define are left out.
 fn transitive_includes(root: &Path, path: &Path) -> Result<BTreeSet<PathBuf>, CompileError> {
     let mut found = BTreeSet::new();
     let mut pending = vec![path.to_owned()];
     while let Some(path) = pending.pop() {
         for line in read(&path)?.lines() {
             let Some(name) = line.trim().strip_prefix("#include \"").and_then(|rest| rest.split('"').next()) else { continue };
-            if found.insert(PathBuf::from(name)) {
+            if name.ends_with(".glsl") && found.insert(PathBuf::from(name)) {
                 pending.push(root.join(name));
             }
         }

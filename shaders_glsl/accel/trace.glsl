@@ -11,7 +11,7 @@
 #include "shared/bindings.glsl"
 #include "accel/ray.glsl"
 #include "accel/alpha.glsl"
-#include ACCEL_FILE
+#include "ACCEL_FILE"
 
 /// Nearest hit in (t_min, t_max). `alpha_seed` decides stochastic transparency: the same seed sees the same holes.
 bool trace_closest(Ray ray, uint alpha_seed, out Hit hit) {

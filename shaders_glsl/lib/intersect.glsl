@@ -1,0 +1,85 @@
+// Ray against box and ray against triangle, with bounds on what rounding may do.
+//
+// Box: slabs with the far side grown by the error of its own arithmetic (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013), so that
+// what a triangle test accepts never lies in a box that was passed by.
+// Triangle: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. Deviations: both windings hit, so axes are
+// never swapped; and an edge function of exactly zero counts as inside instead of being evaluated again in double precision. Rounded
+// products keep the order of the exact ones, so an edge function never has the wrong sign, only sometimes none: a ray that
+// meets an edge hits at least one of its triangles, perhaps both, at the same distance.
+#ifndef LIB_INTERSECT_GLSL
+#define LIB_INTERSECT_GLSL
+
+/// 1 / direction, finite: components nearer to zero than 1e-30 count as that, so that a box's side that the origin lies on is never
+/// zero times infinity.
+vec3 finite_reciprocal(vec3 direction) {
+    vec3 least = mix(vec3(-1e-30), vec3(1e-30), greaterThanEqual(direction, vec3(0.0)));
+    return 1.0 / mix(direction, least, lessThan(abs(direction), vec3(1e-30)));
+}
+
+/// Where the ray enters the box, at least t_min; infinity where it misses it within (t_min, t_max).
+float intersect_box(vec3 origin, vec3 reciprocal, float t_min, float t_max, vec3 box_min, vec3 box_max) {
+    vec3 t0 = (box_min - origin) * reciprocal;
+    vec3 t1 = (box_max - origin) * reciprocal;
+    vec3 lower = min(t0, t1);
+    vec3 upper = max(t0, t1);
+    float near = max(max(lower.x, lower.y), max(lower.z, t_min));
+    float far = min(min(upper.x, upper.y), min(upper.z, t_max));
+    // 1 + 2 gamma(3): three roundings on each side.
+    return near <= far * 1.0000004 ? near : uintBitsToFloat(0x7f800000u);
+}
+
+/// A ray's own half of the watertight test: its direction's largest component becomes z, and the shear makes it the z axis.
+struct TriangleRay {
+    vec3 origin;
+    /// x / z, y / z, 1 / z of the permuted direction.
+    vec3 shear;
+    uint axis;
+};
+
+/// Puts component `axis` last and keeps the handedness.
+vec3 axis_last(vec3 v, uint axis) {
+    return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v;
+}
+
+TriangleRay triangle_ray(vec3 origin, vec3 direction) {
+    vec3 size = abs(direction);
+    uint axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+    vec3 d = axis_last(direction, axis);
+    return TriangleRay(origin, vec3(d.xy / d.z, 1.0 / d.z), axis);
+}
+
+/// Distance, and barycentrics of p1 and p2, of a hit in (t_min, t_max).
+bool intersect_watertight(TriangleRay ray, vec3 p0, vec3 p1, vec3 p2, float t_min, float t_max, out float t, out vec2 barycentrics) {
+    vec3 a = axis_last(p0 - ray.origin, ray.axis);
+    vec3 b = axis_last(p1 - ray.origin, ray.axis);
+    vec3 c = axis_last(p2 - ray.origin, ray.axis);
+    // Fused operations would round one triangle's half of an edge unlike its neighbour's.
+    precise vec2 a2 = a.xy - ray.shear.xy * a.z;
+    precise vec2 b2 = b.xy - ray.shear.xy * b.z;
+    precise vec2 c2 = c.xy - ray.shear.xy * c.z;
+    precise vec3 edges = vec3(c2.x * b2.y - c2.y * b2.x, a2.x * c2.y - a2.y * c2.x, b2.x * a2.y - b2.y * a2.x);
+    float least = min(edges.x, min(edges.y, edges.z));
+    float most = max(edges.x, max(edges.y, edges.z));
+    float inverse = 1.0 / (edges.x + edges.y + edges.z);
+    t = dot(edges, vec3(a.z, b.z, c.z)) * ray.shear.z * inverse;
+    barycentrics = edges.yz * inverse;
+    // Edge-on, all edges are zero and t is no number: the comparisons fail.
+    return (least >= 0.0 || most <= 0.0) && t > t_min && t < t_max;
+}
+
+/// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. Same contract; rays may pass between triangles.
+bool intersect_moeller_trumbore(
+    vec3 origin, vec3 direction, vec3 p0, vec3 p1, vec3 p2, float t_min, float t_max, out float t, out vec2 barycentrics
+) {
+    vec3 edge1 = p1 - p0;
+    vec3 edge2 = p2 - p0;
+    vec3 across = cross(direction, edge2);
+    float inverse = 1.0 / dot(edge1, across);
+    vec3 to_origin = origin - p0;
+    vec3 normal = cross(to_origin, edge1);
+    barycentrics = vec2(dot(to_origin, across), dot(direction, normal)) * inverse;
+    t = dot(edge2, normal) * inverse;
+    return barycentrics.x >= 0.0 && barycentrics.y >= 0.0 && barycentrics.x + barycentrics.y <= 1.0 && t > t_min && t < t_max;
+}
+
+#endif
