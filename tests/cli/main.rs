@@ -2,6 +2,7 @@
 
 mod diff;
 mod render_arguments;
+mod setup;
 
 use assert_cmd::Command;
 use std::path::Path;
