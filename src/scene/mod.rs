@@ -4,13 +4,17 @@
 //! directional irradiance in W/m^2 (glTF's lux taken 1:1). Right-handed, y up, as glTF. Colours are linear Rec. 709.
 //! Mesh data stays in the mesh's own space, in single precision; node transforms compose in double precision.
 
+pub mod alias;
 pub mod animation;
 pub mod builtin;
 pub mod camera;
 pub mod effects;
+mod emission;
 pub mod environment;
+pub mod environment_distribution;
 pub mod error;
 pub mod gltf;
+pub mod lights;
 pub mod material;
 pub mod packing;
 pub mod texture;

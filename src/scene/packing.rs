@@ -46,3 +46,40 @@ fn decode(p: DVec2) -> DVec3 {
     let fold = |along: f64, across: f64| if z < 0.0 { (1.0 - across.abs()) * sign_not_zero(along) } else { along };
     DVec3::new(fold(p.x, p.y), fold(p.y, p.x), z).normalize()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+    use rand_pcg::Pcg32;
+
+    fn unpack(x: u32, y: i32, scale: f64) -> DVec3 {
+        decode(DVec2::new(f64::from(x as u16 as i16) / 32767.0, f64::from(y) / scale))
+    }
+
+    #[test]
+    fn packed_vectors_come_back_within_half_a_code() {
+        let mut rng = Pcg32::seed_from_u64(2);
+        for _ in 0..100_000 {
+            let v = [0; 3].map(|_| rng.random_range(-1.0..1.0f64));
+            let v = DVec3::from_array(v).normalize();
+            let bits = pack_normal(v.as_vec3().to_array());
+            let error = unpack(bits, i32::from((bits >> 16) as u16 as i16), 32767.0).angle_between(v).to_degrees();
+            assert!(error < 0.004, "{v}: {error} degrees");
+            let bits = pack_tangent(v.as_vec3().extend(-1.0).to_array());
+            let error = unpack(bits, (bits << 1) as i32 >> 17, 16383.0).angle_between(v).to_degrees();
+            assert!(error < 0.008 && bits >> 31 == 0, "{v}: {error} degrees");
+        }
+    }
+
+    #[test]
+    fn the_axes_are_exact_and_a_tangent_is_never_none() {
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            for v in [axis, -axis] {
+                let bits = pack_normal(v.as_vec3().to_array());
+                assert!(unpack(bits, i32::from((bits >> 16) as u16 as i16), 32767.0).angle_between(v) < 1e-7, "{v}");
+            }
+        }
+        assert_ne!(pack_tangent([0.0, 0.0, 1.0, -1.0]), 0);
+    }
+}
