@@ -16,7 +16,7 @@ impl AliasBuilder {
     pub fn build(&mut self, weights: &[f64], table: &mut Vec<AliasEntry>) -> f64 {
         let sum: f64 = weights.iter().sum();
         table.clear();
-        if !(sum > 0.0) {
+        if sum <= 0.0 {
             return 0.0;
         }
         let scale = weights.len() as f64 / sum;
