@@ -24,6 +24,9 @@ pub struct Binding {
     pub kind: BindingKind,
     /// An array without a size.
     pub unbounded: bool,
+    /// Neither is restricted where the shader does not say `readonly` or `writeonly`. For images; buffers say it per member.
+    pub readable: bool,
+    pub writable: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -123,7 +126,16 @@ impl<'a> Types<'a> {
             name: name.copied().unwrap_or("").to_owned(),
             kind,
             unbounded,
+            readable: !self.is_decorated(variable, Decoration::NonReadable),
+            writable: !self.is_decorated(variable, Decoration::NonWritable),
         })
+    }
+
+    fn is_decorated(&self, id: Word, wanted: Decoration) -> bool {
+        self.module
+            .annotations
+            .iter()
+            .any(|i| i.class.opcode == Op::Decorate && i.operands == [Operand::IdRef(id), Operand::Decoration(wanted)])
     }
 
     fn decoration(&self, id: Word, wanted: Decoration) -> Option<u32> {

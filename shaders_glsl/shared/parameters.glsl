@@ -32,6 +32,9 @@ layout(constant_id = 105) const uint DIFFUSE_MODEL = 0;
 //@ material.energy_compensation on off|on
 /// Returns the energy that single-scattering GGX loses at high roughness. Off is the plain glTF appendix B model.
 layout(constant_id = 106) const uint ENERGY_COMPENSATION = 1;
+//@ textures.level cone cone|zero
+/// Texture level of detail: by ray cones, which follow the footprint of a path, or always the finest, which only many samples filter.
+layout(constant_id = 107) const uint TEXTURE_LEVEL = 0;
 
 struct Parameters {
     //@ paths.max_bounces 8 0..64 bounces

@@ -1,5 +1,7 @@
 //! From radiance to pictures that people and other programs read.
 
+pub mod accumulate;
+pub mod composite;
 pub mod exr_file;
 pub mod image;
 pub mod tonemap;

@@ -1,5 +1,7 @@
 //! The frame: what every kernel sees, passes that declare what they read and write, and the order that follows.
 
 mod globals;
+mod graph;
 
 pub use globals::{Globals, GlobalsInfo, globals_layout};
+pub use graph::{FrameBuilder, FrameGraph, ImageHandle, PassBuilder};

@@ -1,3 +1,5 @@
-//! Light transport: what paths need from the host.
+//! Primary visibility and path tracing.
 
 pub mod energy;
+pub mod gbuffer;
+pub mod megakernel;

@@ -17,8 +17,10 @@ pub mod gltf;
 pub mod lights;
 pub mod material;
 pub mod packing;
+pub mod pose;
 pub mod texture;
 pub mod transform;
+pub mod upload;
 
 pub use animation::Animation;
 pub use camera::{CameraView, UnknownCamera};

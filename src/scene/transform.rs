@@ -28,15 +28,20 @@ impl Local {
 
 /// World matrix of each node. `locals` gives the animated local transform of each node, in the order of `nodes`.
 pub fn world_transforms(nodes: &[Node], locals: &[Local]) -> Vec<DMat4> {
-    let mut world: Vec<DMat4> = Vec::with_capacity(nodes.len());
-    for (node, local) in nodes.iter().zip(locals) {
+    let mut world = vec![DMat4::IDENTITY; nodes.len()];
+    compose(nodes, locals, &mut world);
+    world
+}
+
+/// The same into memory that is there already.
+pub fn compose(nodes: &[Node], locals: &[Local], world: &mut [DMat4]) {
+    for (index, (node, local)) in nodes.iter().zip(locals).enumerate() {
         let local = local.to_matrix();
-        world.push(match node.parent {
+        world[index] = match node.parent {
             Some(parent) => world[parent as usize] * local,
             None => local,
-        });
+        };
     }
-    world
 }
 
 /// Whether a mesh placed by `world` has an area and an inverse in single precision. Not so where a scale is zero, even on one axis:

@@ -3,8 +3,6 @@
 #[path = "../common/mod.rs"]
 mod common;
 
-mod builtin;
-mod effects;
 mod gpu_kernel;
 mod metrics;
 mod scene_shared;

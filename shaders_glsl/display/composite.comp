@@ -1,0 +1,23 @@
+// Recombines the terms of a path: Meijer, section 4.1 (paths/terms.glsl states the sum).
+#include "shared/bindings.glsl"
+
+layout(local_size_x = 8, local_size_y = 4) in;
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D before;
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D attenuation;
+layout(set = 1, binding = 2, rgba32f) readonly uniform image2D diffuse_direct;
+layout(set = 1, binding = 3, rgba32f) readonly uniform image2D diffuse_indirect;
+layout(set = 1, binding = 4, rgba32f) readonly uniform image2D specular_direct;
+layout(set = 1, binding = 5, rgba32f) readonly uniform image2D specular_indirect;
+layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D radiance;
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
+        return;
+    }
+    vec3 diffuse = imageLoad(diffuse_direct, pixel).rgb + imageLoad(diffuse_indirect, pixel).rgb;
+    vec3 specular = imageLoad(specular_direct, pixel).rgb + imageLoad(specular_indirect, pixel).rgb;
+    vec3 sum = imageLoad(before, pixel).rgb + imageLoad(attenuation, pixel).rgb * diffuse + specular;
+    imageStore(radiance, pixel, vec4(sum, 1.0));
+}

@@ -1,0 +1,36 @@
+// Path tracing, one path per pixel through the g-buffer's point, the terms apart: paths/terms.glsl.
+#define SEPARATE_TERMS
+#define SHARED_JITTER
+#include "paths/path.glsl"
+
+layout(local_size_x = 8, local_size_y = 4) in;
+
+layout(set = 1, binding = 0, rgba32f) writeonly uniform image2D before;
+layout(set = 1, binding = 1, rgba32f) writeonly uniform image2D attenuation;
+layout(set = 1, binding = 2, rgba32f) writeonly uniform image2D diffuse_direct;
+layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D diffuse_indirect;
+layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D specular_direct;
+layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D specular_indirect;
+layout(set = 1, binding = 6, r32ui) writeonly uniform uimage2D ray_count;
+
+/// A sample with a value that is not a number is no sample: it must not enter a history.
+vec4 finite_or_black(vec3 value) {
+    bool finite = !any(isnan(value)) && !any(isinf(value));
+    return vec4(finite ? value : vec3(0.0), finite ? 1.0 : 0.0);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
+        return;
+    }
+    uvec2 counts;
+    Terms terms = trace_paths(uvec2(pixel), frame.first_sample, 1u, counts);
+    imageStore(before, pixel, finite_or_black(terms.before));
+    imageStore(attenuation, pixel, finite_or_black(terms.attenuation));
+    imageStore(diffuse_direct, pixel, finite_or_black(terms.diffuse_direct));
+    imageStore(diffuse_indirect, pixel, finite_or_black(terms.diffuse_indirect));
+    imageStore(specular_direct, pixel, finite_or_black(terms.specular_direct));
+    imageStore(specular_indirect, pixel, finite_or_black(terms.specular_indirect));
+    imageStore(ray_count, pixel, uvec4(counts.x | counts.y << 16));
+}

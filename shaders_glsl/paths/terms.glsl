@@ -1,0 +1,57 @@
+// A path's radiance, kept apart at the filter vertex: Meijer, section 4.1, figure 6 and algorithm 1.
+//
+//   radiance = before + attenuation * (diffuse_direct + diffuse_indirect) + specular_direct + specular_indirect
+//
+// The filter vertex is the first one with a diffuse lobe. `before`: emitted or scattered in front of it. `attenuation`: throughput up to
+// it times its diffuse albedo, which is multiplied in nowhere else and divided out nowhere. The diffuse terms: what its diffuse lobe
+// receives, direct light and the rest apart, as if its albedo were 1. The specular terms: what its other lobes send on, throughput
+// up to it included.
+//
+// Deviations and why: the algorithm stores one attenuation for diffuse and specular (attenIF) and one radiance after it. Here a
+// direction that both lobes could have sampled carries a weight for each, so the sum is the plain path tracer's for every material,
+// and the specular part, which depends on the direction, needs no albedo taken out.
+#ifndef PATHS_TERMS_GLSL
+#define PATHS_TERMS_GLSL
+
+struct Terms {
+    vec3 before;
+    vec3 attenuation;
+    vec3 diffuse_direct;
+    vec3 diffuse_indirect;
+    vec3 specular_direct;
+    vec3 specular_indirect;
+};
+
+/// Where a contribution belongs.
+const uint TERM_BEFORE = 0u;
+const uint TERM_DIRECT = 1u;
+const uint TERM_INDIRECT = 2u;
+
+Terms no_terms() {
+    return Terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+}
+
+/// Radiance that arrives through the filter vertex's lobes with these weights; in front of it the weights are 0 and 1.
+void add_term(inout Terms terms, uint term, float diffuse_weight, vec3 specular_weight, vec3 radiance) {
+#ifdef SEPARATE_TERMS
+    if (term == TERM_DIRECT) {
+        terms.diffuse_direct += diffuse_weight * radiance;
+        terms.specular_direct += specular_weight * radiance;
+        return;
+    }
+    if (term == TERM_INDIRECT) {
+        terms.diffuse_indirect += diffuse_weight * radiance;
+        terms.specular_indirect += specular_weight * radiance;
+        return;
+    }
+#endif
+    terms.before += (terms.attenuation * diffuse_weight + specular_weight) * radiance;
+}
+
+/// What a picture shows, where the terms are separate; else `before` holds it already.
+vec3 recombine(Terms terms) {
+    return terms.before + terms.attenuation * (terms.diffuse_direct + terms.diffuse_indirect) + terms.specular_direct
+        + terms.specular_indirect;
+}
+
+#endif

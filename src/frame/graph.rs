@@ -1,0 +1,211 @@
+//! Passes that declare what they read and write. Barriers, labels, GPU time per pass and a look at any pass's output follow from that.
+//!
+//! A frame is declared once and recorded often: pipelines, descriptor sets and barriers are settled when it is built, so that a
+//! frame costs the host a few calls per pass and no memory.
+
+use super::globals::Globals;
+use crate::gpu::{Commands, ComputePipeline, DescriptorSet, Gpu, GpuError, Image, ImageInfo, SetLayout, Timer, load_shader, vk};
+use shader_compiler::{Binding, BindingKind};
+use std::collections::HashSet;
+use std::ffi::CString;
+use std::sync::Arc;
+
+/// An image of the frame under construction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ImageHandle(usize);
+
+/// Declares images and passes, in the order of the frame.
+pub struct FrameBuilder<'a> {
+    gpu: &'a Gpu,
+    globals: Arc<SetLayout>,
+    structure: &'a str,
+    constants: Vec<(u32, u32)>,
+    extent: [u32; 2],
+    images: Vec<(&'static str, Image)>,
+    passes: Vec<Pass>,
+    /// What has been touched since the last barrier.
+    read: HashSet<ImageHandle>,
+    written: HashSet<ImageHandle>,
+}
+
+struct Pass {
+    name: &'static str,
+    label: CString,
+    pipeline: ComputePipeline,
+    set: DescriptorSet,
+    extent: [u32; 2],
+    barrier: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Access {
+    Read,
+    Write,
+    Update,
+}
+
+impl<'a> FrameBuilder<'a> {
+    /// `structure`: stem of the acceleration structure that rays are traced in; `constants`: specialization of every pass;
+    /// `extent`: of the picture, pixels.
+    pub fn new(gpu: &'a Gpu, globals: &Globals, structure: &'a str, constants: Vec<(u32, u32)>, extent: [u32; 2]) -> Self {
+        Self {
+            gpu,
+            globals: globals.layout().clone(),
+            structure,
+            constants,
+            extent,
+            images: Vec::new(),
+            passes: Vec::new(),
+            read: HashSet::new(),
+            written: HashSet::new(),
+        }
+    }
+
+    /// An image of the picture's size, zero at first. Its name is that of its AOV.
+    pub fn image(&mut self, name: &'static str, format: vk::Format) -> Result<ImageHandle, GpuError> {
+        self.images.push((name, self.gpu.create_image(name, ImageInfo::storage(format, self.extent))?));
+        Ok(ImageHandle(self.images.len() - 1))
+    }
+
+    /// The next pass: a kernel by its stem below shaders_glsl/, over every pixel.
+    pub fn pass(&mut self, name: &'static str, shader: &'static str) -> PassBuilder<'_, 'a> {
+        PassBuilder { name, shader, uses: Vec::new(), constants: self.constants.clone(), frame: self }
+    }
+
+    pub fn build(self) -> Result<FrameGraph, GpuError> {
+        Ok(FrameGraph { images: self.images, passes: self.passes })
+    }
+
+    /// Whether a pass with these uses must wait for the ones before it.
+    fn needs_barrier(&mut self, uses: &[(&str, ImageHandle, Access)]) -> bool {
+        let conflicts = |&(_, image, access): &(&str, ImageHandle, Access)| {
+            self.written.contains(&image) || (access != Access::Read && self.read.contains(&image))
+        };
+        let barrier = uses.iter().any(conflicts);
+        if barrier {
+            self.read.clear();
+            self.written.clear();
+        }
+        for &(_, image, access) in uses {
+            if access == Access::Read {
+                self.read.insert(image)
+            } else {
+                self.written.insert(image)
+            };
+        }
+        barrier
+    }
+}
+
+/// One pass under construction; each use names the shader's variable.
+pub struct PassBuilder<'b, 'a> {
+    frame: &'b mut FrameBuilder<'a>,
+    name: &'static str,
+    shader: &'static str,
+    uses: Vec<(&'static str, ImageHandle, Access)>,
+    constants: Vec<(u32, u32)>,
+}
+
+impl PassBuilder<'_, '_> {
+    pub fn reads(mut self, variable: &'static str, image: ImageHandle) -> Self {
+        self.uses.push((variable, image, Access::Read));
+        self
+    }
+
+    pub fn writes(mut self, variable: &'static str, image: ImageHandle) -> Self {
+        self.uses.push((variable, image, Access::Write));
+        self
+    }
+
+    /// Reads and writes each pixel's own value.
+    pub fn updates(mut self, variable: &'static str, image: ImageHandle) -> Self {
+        self.uses.push((variable, image, Access::Update));
+        self
+    }
+
+    /// A specialization constant of this pass's own.
+    pub fn constant(mut self, id: u32, value: u32) -> Self {
+        self.constants.push((id, value));
+        self
+    }
+
+    /// # Errors
+    /// The declaration differs from the shader's: a variable without an image, an image without a variable, other access.
+    pub fn add(self) -> Result<(), GpuError> {
+        let frame = self.frame;
+        let spirv = load_shader(self.shader, frame.structure)?;
+        let pipeline = ComputePipeline::new(frame.gpu, self.name, &spirv, &frame.globals, &self.constants)?;
+        let set = DescriptorSet::new(pipeline.own_layout())?;
+        let bindings: Vec<&Binding> = pipeline.reflection().bindings.iter().filter(|b| b.set == 1).collect();
+        check(&bindings, &self.uses).map_err(|message| GpuError::Interface { shader: self.shader.to_owned(), message })?;
+        for binding in bindings {
+            let (_, image, _) = self.uses.iter().find(|(variable, ..)| *variable == binding.name).expect("checked");
+            set.write_storage_image(binding.binding, &frame.images[image.0].1);
+        }
+        let barrier = frame.needs_barrier(&self.uses);
+        let label = CString::new(self.name).expect("pass names have no zeros");
+        frame.passes.push(Pass { name: self.name, label, pipeline, set, extent: frame.extent, barrier });
+        Ok(())
+    }
+}
+
+/// The shader's variables against what the pass declares.
+fn check(bindings: &[&Binding], uses: &[(&'static str, ImageHandle, Access)]) -> Result<(), String> {
+    for binding in bindings {
+        let Some((.., access)) = uses.iter().find(|(variable, ..)| *variable == binding.name) else {
+            return Err(format!("the pass declares nothing for '{}'", binding.name));
+        };
+        let declared = (*access != Access::Write, *access != Access::Read);
+        if binding.kind != BindingKind::StorageImage || (binding.readable, binding.writable) != declared {
+            return Err(format!("'{}' is declared for another use: {access:?}", binding.name));
+        }
+    }
+    match uses.iter().find(|(variable, ..)| !bindings.iter().any(|b| b.name == *variable)) {
+        Some((variable, ..)) => Err(format!("it has no '{variable}'")),
+        None => Ok(()),
+    }
+}
+
+/// A frame that is ready to be recorded.
+pub struct FrameGraph {
+    images: Vec<(&'static str, Image)>,
+    passes: Vec<Pass>,
+}
+
+impl FrameGraph {
+    pub fn pass_names(&self) -> impl Iterator<Item = &'static str> {
+        self.passes.iter().map(|pass| pass.name)
+    }
+
+    /// Marks that [`Self::record`] makes on a timer.
+    pub fn marks(&self) -> u32 {
+        self.passes.len() as u32 + 1
+    }
+
+    /// Everything that a pass puts out, by name.
+    pub fn images(&self) -> impl Iterator<Item = (&'static str, &Image)> {
+        self.images.iter().map(|(name, image)| (*name, image))
+    }
+
+    pub fn image(&self, name: &str) -> Option<&Image> {
+        self.images().find(|(n, _)| *n == name).map(|(_, image)| image)
+    }
+
+    /// All passes in order; the first waits for whatever was recorded or submitted before, builds of acceleration structures included.
+    pub fn record(&self, commands: &Commands, globals: &DescriptorSet, timer: &mut Timer) {
+        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
+        timer.reset(commands);
+        commands.barrier(vk::PipelineStageFlags::ALL_COMMANDS, compute);
+        timer.mark(commands, 0);
+        for (index, pass) in (1..).zip(&self.passes) {
+            commands.begin_label(&pass.label);
+            if pass.barrier {
+                commands.barrier(compute, compute);
+            }
+            let groups = pass.pipeline.groups([pass.extent[0], pass.extent[1], 1]);
+            commands.dispatch(&pass.pipeline, &[globals, &pass.set], &[], groups);
+            commands.end_label();
+            timer.mark(commands, index);
+        }
+    }
+}

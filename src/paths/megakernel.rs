@@ -1,0 +1,63 @@
+//! Whole paths in one kernel: shaders_glsl/paths/path.glsl, with radiance summed up (megakernel.comp) or its terms apart
+//! (megakernel_terms.comp; Meijer, section 4.1, algorithm 1).
+//!
+//! Takes the scene. Also returns `ray_count`: scattered rays in the low, shadow rays in the high 16 bits. No history. Writes 20 bytes per
+//! pixel, or 100 with terms; traces up to 2 (bounces + 1) + 1 rays per sample.
+
+use crate::frame::{FrameBuilder, ImageHandle};
+use crate::gpu::{GpuError, vk};
+
+/// Specialization constant: samples per pixel and frame.
+const SAMPLES: u32 = 200;
+
+const RGBA: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// Radiance of `spp` samples per pixel.
+pub fn add(frame: &mut FrameBuilder, spp: u32) -> Result<ImageHandle, GpuError> {
+    let radiance = frame.image("radiance", RGBA)?;
+    let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
+    let pass = frame.pass("megakernel", "paths/megakernel").constant(SAMPLES, spp);
+    pass.writes("radiance", radiance).writes("ray_count", ray_count).add()?;
+    Ok(radiance)
+}
+
+/// What one path per pixel is made of; shaders_glsl/paths/terms.glsl says how the terms sum up.
+#[derive(Debug, Clone, Copy)]
+pub struct Terms {
+    pub before: ImageHandle,
+    pub attenuation: ImageHandle,
+    pub diffuse_direct: ImageHandle,
+    pub diffuse_indirect: ImageHandle,
+    pub specular_direct: ImageHandle,
+    pub specular_indirect: ImageHandle,
+}
+
+impl Terms {
+    /// Each with its name in shaders.
+    pub fn named(&self) -> [(&'static str, ImageHandle); 6] {
+        [
+            ("before", self.before),
+            ("attenuation", self.attenuation),
+            ("diffuse_direct", self.diffuse_direct),
+            ("diffuse_indirect", self.diffuse_indirect),
+            ("specular_direct", self.specular_direct),
+            ("specular_indirect", self.specular_indirect),
+        ]
+    }
+}
+
+/// One sample per pixel, through the same point of the pixel as the g-buffer's.
+pub fn add_with_terms(frame: &mut FrameBuilder) -> Result<Terms, GpuError> {
+    let terms = Terms {
+        before: frame.image("before", RGBA)?,
+        attenuation: frame.image("attenuation", RGBA)?,
+        diffuse_direct: frame.image("diffuse_direct", RGBA)?,
+        diffuse_indirect: frame.image("diffuse_indirect", RGBA)?,
+        specular_direct: frame.image("specular_direct", RGBA)?,
+        specular_indirect: frame.image("specular_indirect", RGBA)?,
+    };
+    let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
+    let pass = frame.pass("megakernel", "paths/megakernel_terms").writes("ray_count", ray_count);
+    terms.named().into_iter().fold(pass, |pass, (name, image)| pass.writes(name, image)).add()?;
+    Ok(terms)
+}

@@ -1,0 +1,122 @@
+//! The scene at one moment, as a frame needs it: world transforms relative to an origin near the camera, this frame's and the last's.
+//!
+//! Transforms compose in double precision. The origin is the camera's place rounded to a power of two near the scene's size: what
+//! reaches the device is small, whatever the scene's place in the world, and only whole steps ever change it, so that
+//! anything keyed by `position + origin` stays in place when it moves.
+
+use super::camera::CameraView;
+use super::transform::{compose, flips_winding};
+use super::{Local, Projection, Scene};
+use crate::shared;
+use glam::{DMat4, DVec3};
+
+/// Memory that is reused from frame to frame.
+pub struct Pose {
+    locals: Vec<Local>,
+    /// World matrix of each node, this frame and the last.
+    world: [Vec<DMat4>; 2],
+    view: [CameraView; 2],
+    origin: DVec3,
+    /// Metres; a power of two.
+    step: f64,
+    /// Half the diagonal of the scene's bounds, metres.
+    radius: f64,
+    instances: Vec<shared::Instance>,
+}
+
+impl Pose {
+    /// At time 0, seen from `view`. `instances` gives flags and first light of each instance of the scene.
+    pub fn new(scene: &Scene, view: CameraView, instances: Vec<shared::Instance>) -> Self {
+        let locals: Vec<Local> = scene.animation.sample(&scene.nodes, 0.0);
+        let world = super::transform::world_transforms(&scene.nodes, &locals);
+        let radius = scene.bounds(&world).map_or(1.0, |(low, high)| 0.5 * (high - low).length()).max(f64::MIN_POSITIVE);
+        let mut pose = Self {
+            locals,
+            world: [world.clone(), world],
+            view: [view; 2],
+            origin: DVec3::ZERO,
+            step: radius.log2().ceil().exp2(),
+            radius,
+            instances,
+        };
+        pose.rebase();
+        pose.place_instances(scene);
+        pose
+    }
+
+    /// Moves on to `time`, seconds; `view` is where it is seen from, given the world matrices.
+    pub fn advance(&mut self, scene: &Scene, time: f64, view: impl FnOnce(&[DMat4]) -> CameraView) {
+        scene.animation.sample_into(&scene.nodes, time, &mut self.locals);
+        self.world.swap(0, 1);
+        self.view.swap(0, 1);
+        compose(&scene.nodes, &self.locals, &mut self.world[0]);
+        self.view[0] = view(&self.world[0]);
+        self.rebase();
+        self.place_instances(scene);
+    }
+
+    fn rebase(&mut self) {
+        self.origin = (self.view[0].position / self.step).round() * self.step;
+    }
+
+    fn place_instances(&mut self, scene: &Scene) {
+        let to_origin = DMat4::from_translation(-self.origin);
+        for (placed, instance) in self.instances.iter_mut().zip(&scene.instances) {
+            let [now, before] = [0, 1].map(|frame| to_origin * self.world[frame][instance.node as usize]);
+            placed.object_to_world = rows(&now);
+            placed.world_to_object = rows(&now.inverse());
+            placed.previous_object_to_world = rows(&before);
+            let mirrored = if flips_winding(&now) { shared::INSTANCE_MIRRORED } else { 0 };
+            placed.flags = placed.flags & !shared::INSTANCE_MIRRORED | mirrored;
+        }
+    }
+
+    /// In the order of the scene's.
+    pub fn instances(&self) -> &[shared::Instance] {
+        &self.instances
+    }
+
+    /// World matrix of each node.
+    pub fn world(&self) -> &[DMat4] {
+        &self.world[0]
+    }
+
+    /// World coordinates of the device's zero.
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// Metres.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// This frame's camera and the last's, relative to this frame's origin, for a picture of `extent` pixels.
+    pub fn cameras(&self, extent: [u32; 2]) -> [shared::Camera; 2] {
+        self.view.map(|view| camera(&view, self.origin, extent))
+    }
+}
+
+/// The upper three rows of an affine matrix.
+fn rows(matrix: &DMat4) -> [[f32; 4]; 3] {
+    [0, 1, 2].map(|row| matrix.row(row).as_vec4().to_array())
+}
+
+fn camera(view: &CameraView, origin: DVec3, extent: [u32; 2]) -> shared::Camera {
+    let [width, height] = extent.map(f64::from);
+    let (projection, half_height) = match view.projection {
+        Projection::Perspective { yfov } => (1, (0.5 * f64::from(yfov)).tan()),
+        Projection::Orthographic { ymag } => (0, f64::from(ymag)),
+    };
+    let pixel = 2.0 * half_height / height;
+    shared::Camera {
+        position: (view.position - origin).as_vec3().to_array(),
+        projection,
+        right: (view.forward.cross(view.up) * half_height * width / height).as_vec3().to_array(),
+        pixel_spread: if projection == 1 { pixel.atan() as f32 } else { 0.0 },
+        up: (view.up * half_height).as_vec3().to_array(),
+        pixel_width: if projection == 0 { pixel as f32 } else { 0.0 },
+        forward: view.forward.as_vec3().to_array(),
+        padding: 0,
+    }
+}
