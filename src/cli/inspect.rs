@@ -1,8 +1,51 @@
-use super::Outcome;
+//! `pathspace inspect`: what is in a scene, which effects it calls for, and why.
 
+mod summary;
+
+use self::summary::Summary;
+use super::{Outcome, output};
+use crate::scene::{self, Scene, builtin};
+use anyhow::bail;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Tell what is in a scene, which effects it calls for, and why
 #[derive(Debug, clap::Args)]
-pub struct Args {}
+pub struct Args {
+    /// A .gltf or .glb file, or a built-in scene's name
+    #[arg(default_value = builtin::DEFAULT)]
+    scene: String,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// Write a built-in scene as a .glb that other renderers read
+    #[arg(long, value_name = "OUT.glb")]
+    export: Option<PathBuf>,
+}
 
-pub fn run(_args: &Args) -> anyhow::Result<Outcome> {
-    anyhow::bail!("'pathspace inspect' is not part of this build")
+pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+    if let Some(path) = &args.export {
+        export(&args.scene, path)?;
+    }
+    let summary = Summary::of(&load(&args.scene)?);
+    output::print_result(&if args.json { serde_json::to_string_pretty(&summary)? } else { summary.to_string() })?;
+    Ok(Outcome::Done)
+}
+
+/// A built-in scene where one has that name, else the file.
+pub fn load(scene: &str) -> anyhow::Result<Scene> {
+    Ok(match builtin::find(scene)? {
+        Some(request) => request.load()?,
+        None => scene::gltf::load(Path::new(scene))?,
+    })
+}
+
+fn export(scene: &str, path: &Path) -> anyhow::Result<()> {
+    let Some(request) = builtin::find(scene)? else {
+        bail!(
+            "'{scene}' is no built-in scene, and only those are exported; built in are {}",
+            builtin::names().collect::<Vec<_>>().join(", ")
+        );
+    };
+    output::write_atomically(path, |file| file.write_all(&request.glb()))
 }

@@ -1,7 +1,9 @@
 //! The program as its user meets it: exit codes, messages, files, what goes to stdout.
 
 mod diff;
+mod readme;
 mod render_arguments;
+mod setup;
 
 use assert_cmd::Command;
 use std::path::Path;

@@ -3,6 +3,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod builtin;
+mod effects;
 mod gpu_kernel;
 mod metrics;
 mod scene_shared;

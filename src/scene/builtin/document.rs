@@ -113,6 +113,9 @@ impl Document {
         self.root["accessors"][input]["max"] = json!([times.iter().copied().fold(f32::NEG_INFINITY, f32::max)]);
         let (kind, width) = if path == "rotation" { ("VEC4", 4) } else { ("VEC3", 3) };
         let output = self.add_accessor(bytemuck::cast_slice(&values.concat()), kind, FLOAT, 4 * width, None);
+        if self.root["animations"].is_null() {
+            self.root["animations"] = json!([{}]);
+        }
         let animation = &mut self.root["animations"][0];
         let sampler = push(&mut animation["samplers"], json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
         push(&mut animation["channels"], json!({ "sampler": sampler, "target": { "node": node, "path": path } }));

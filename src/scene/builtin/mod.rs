@@ -4,7 +4,12 @@
 mod cornell;
 mod document;
 mod furnace;
+mod hall;
+mod material;
+mod picture;
 mod surface;
+
+use super::{Environment, LoadError, Scene};
 
 /// A scene made by code.
 #[derive(Debug)]
@@ -37,7 +42,7 @@ pub struct Options {
 /// The scene that is shown where none is named.
 pub const DEFAULT: &str = "cornell";
 
-pub static REGISTRY: [Builtin; 2] = [
+pub static REGISTRY: [Builtin; 6] = [
     Builtin {
         name: "cornell",
         help: "Cornell box with the classic dimensions, diffuse, one area light",
@@ -51,6 +56,34 @@ pub static REGISTRY: [Builtin; 2] = [
         triangles: None,
         environment: Some(furnace::ENVIRONMENT),
         make: furnace::make,
+    },
+    Builtin {
+        name: "material",
+        help: "spheres: ramps of roughness and metalness, glass, mirror, clearcoat, a normal map; textured floor",
+        triangles: None,
+        environment: Some(material::ENVIRONMENT),
+        make: material::make,
+    },
+    Builtin {
+        name: "material-glossy",
+        help: "of 'material', the ramps of roughness and metalness",
+        triangles: None,
+        environment: Some(material::ENVIRONMENT),
+        make: material::make_glossy,
+    },
+    Builtin {
+        name: "material-glass",
+        help: "solid glass from smooth to rough on the floor of 'material'",
+        triangles: None,
+        environment: Some(material::ENVIRONMENT),
+        make: material::make_glass,
+    },
+    Builtin {
+        name: "hall",
+        help: "vaulted hall with columns, carved stone, some eighty small lamps and a turning sculpture",
+        triangles: Some(hall::TRIANGLES),
+        environment: None,
+        make: hall::make,
     },
 ];
 
@@ -77,6 +110,16 @@ impl Request {
     /// The scene as a .glb file.
     pub fn glb(&self) -> Vec<u8> {
         (self.builtin.make)(&self.options)
+    }
+
+    /// # Errors
+    /// None that is not a bug here: the loader is the one that reads users' files.
+    pub fn load(&self) -> Result<Scene, LoadError> {
+        let mut scene = super::gltf::load_slice(&self.glb(), None, self.builtin.name)?;
+        if let Some(radiance) = self.builtin.environment {
+            scene.environment = Environment::Constant(radiance);
+        }
+        Ok(scene)
     }
 }
 

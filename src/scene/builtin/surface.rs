@@ -25,14 +25,14 @@ impl Surface {
         }
     }
 
-    /// Parametric patch: `at(u, v)` over the unit square, front face where d/du x d/dv points. `at` is differentiated by central
-    /// differences, so it must be defined a little beyond the square.
+    /// Parametric patch: `at(u, v)` over the unit square, front face where d/du x d/dv points. Normals are central differences over a
+    /// cell, so that they show no detail that the triangles lack; `at` must be defined half a cell beyond the square.
     pub fn patch(columns: u32, rows: u32, at: impl Fn(f32, f32) -> Vec3) -> Self {
-        const STEP: f32 = 1.0 / 2048.0;
+        let [half_u, half_v] = [columns, rows].map(|cells| 0.5 / cells as f32);
         let mut surface = Self::default();
         for (u, v) in lattice(columns, rows) {
-            let along_u = at(u + STEP, v) - at(u - STEP, v);
-            let along_v = at(u, v + STEP) - at(u, v - STEP);
+            let along_u = at(u + half_u, v) - at(u - half_u, v);
+            let along_v = at(u, v + half_v) - at(u, v - half_v);
             surface.push(at(u, v), along_u.cross(along_v).normalize_or(Vec3::Y), vec2(u, 1.0 - v));
         }
         surface.triangles = lattice_triangles(columns, rows);
@@ -62,15 +62,6 @@ impl Surface {
         FACES.iter().map(|face| Self::quad(face.map(corner))).sum()
     }
 
-    /// Surface of revolution around y: `profile(v)` is (radius, height), from the bottom up for an outside surface.
-    pub fn lathe(segments: u32, rings: u32, profile: impl Fn(f32) -> Vec2) -> Self {
-        Self::patch(segments, rings, |u, v| {
-            let (sin, cos) = (u * TAU).sin_cos();
-            let point = profile(v);
-            vec3(point.x * sin, point.y, point.x * cos)
-        })
-    }
-
     pub fn transformed(mut self, transform: Affine3A) -> Self {
         let normal_matrix = transform.matrix3.inverse().transpose();
         self.positions.iter_mut().for_each(|p| *p = transform.transform_point3(*p));
@@ -83,13 +74,6 @@ impl Surface {
 
     pub fn translated(self, offset: Vec3) -> Self {
         self.transformed(Affine3A::from_translation(offset))
-    }
-
-    /// The same surface seen from its other side.
-    pub fn flipped(mut self) -> Self {
-        self.normals.iter_mut().for_each(|n| *n = -*n);
-        self.triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        self
     }
 
     /// Texture coordinates multiplied, for textures that repeat.
@@ -158,7 +142,7 @@ mod tests {
     fn front_faces_agree_with_shading_normals() {
         assert!(facing_error(&Surface::cuboid(Vec3::NEG_ONE, Vec3::ONE)) < 1e-6);
         assert!(facing_error(&Surface::sphere(2.0, 64, 32)) < 0.02);
-        assert!(facing_error(&Surface::lathe(64, 8, |v| vec2(1.0 + v, v))) < 0.02);
+        assert!(facing_error(&Surface::patch(8, 8, |u, v| vec3(u, u * v, -v))) < 0.02);
     }
 
     #[test]
