@@ -36,6 +36,9 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
 pub fn load(scene: &str) -> anyhow::Result<Scene> {
     Ok(match builtin::find(scene)? {
         Some(request) => request.load()?,
+        None if Path::new(scene).extension().is_none() && !Path::new(scene).exists() => {
+            bail!("'{scene}' is neither a file nor a built-in scene; built in are {}", builtin::names().collect::<Vec<_>>().join(", "))
+        }
         None => scene::gltf::load(Path::new(scene))?,
     })
 }

@@ -1,6 +1,7 @@
 //! The program as its user meets it: exit codes, messages, files, what goes to stdout.
 
 mod diff;
+mod inspect;
 mod readme;
 mod render_arguments;
 mod setup;
