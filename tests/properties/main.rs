@@ -2,9 +2,12 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/glb.rs"]
+mod glb;
 
 mod builtin;
 mod effects;
 mod gpu_kernel;
 mod metrics;
+mod scene_meshes;
 mod scene_shared;

@@ -19,10 +19,11 @@ mod warnings;
 use std::path::Path;
 
 use gltf::json::Root;
+use serde::Deserialize;
 
 pub(in crate::scene) use self::buffers::read_file;
 use self::{buffers::Buffers, document::Document, images::Textures, nodes::Tree, warnings::Warnings};
-use super::{Animation, Instance, LoadError, Local, Mesh, Problem, Scene, transform};
+use super::{Animation, Environment, Instance, LoadError, Local, Mesh, Problem, Scene, transform};
 
 /// Loads a .gltf or .glb file, with the buffers and images it refers to.
 ///
@@ -69,9 +70,22 @@ fn read(bytes: &[u8], base_dir: Option<&Path>, name: &str) -> Result<Scene, Prob
         nodes: tree.nodes,
         instances,
         animation,
-        environment: super::Environment::default(),
+        environment: environment(root),
         warnings: warnings.into_vec(),
     })
+}
+
+/// `extras.environment` of the scene, a constant radiance that core glTF cannot express; black without it.
+fn environment(root: &Root) -> Environment {
+    #[derive(Deserialize)]
+    struct SceneExtras {
+        environment: [f32; 3],
+    }
+    let scene = root.scenes.get(root.scene.map_or(0, |scene| scene.value()));
+    let extras = scene.and_then(|scene| serde_json::from_str::<SceneExtras>(scene.extras.as_ref()?.get()).ok());
+    let radiance =
+        extras.map(|extras| extras.environment).filter(|radiance| radiance.iter().all(|&channel| (0.0..f32::MAX).contains(&channel)));
+    radiance.map_or_else(Environment::default, Environment::Constant)
 }
 
 fn warn_of_unsupported(root: &Root, warnings: &mut Warnings) {

@@ -2,10 +2,14 @@
 
 use std::collections::HashMap;
 
-use glam::{Affine2, Vec2};
+use glam::{Affine2, Vec2, Vec3};
 
 use super::geometry;
 use crate::scene::{Mesh, TextureRef};
+
+/// mikktspace recurses once for each triangle around a vertex, and compares each with each: a fan of a hundred thousand would take
+/// minutes, or the stack.
+const MAX_VALENCE: usize = 2000;
 
 struct Corners<'a> {
     mesh: &'a Mesh,
@@ -41,6 +45,23 @@ impl bevy_mikktspace::Geometry for Corners<'_> {
     }
 }
 
+impl Corners<'_> {
+    /// The direction in which u grows on each triangle, without smoothing.
+    fn follow_each_triangle(&mut self) {
+        for (triangle, tangents) in self.mesh.triangles.iter().zip(self.tangents.as_chunks_mut::<3>().0) {
+            let [a, b, c] = triangle.map(|vertex| Vec3::from(self.mesh.positions[vertex as usize]));
+            let [uv_a, uv_b, uv_c] = triangle.map(|vertex| Vec2::from(self.uv[vertex as usize]));
+            let (to_b, to_c) = (uv_b - uv_a, uv_c - uv_a);
+            let handedness = -to_b.perp_dot(to_c).signum();
+            let along_u = ((b - a) * to_c.y - (c - a) * to_b.y) * -handedness;
+            for (vertex, tangent) in triangle.iter().zip(tangents) {
+                let normal = Vec3::from(self.mesh.normals[*vertex as usize]);
+                *tangent = along_u.reject_from_normalized(normal).normalize_or_zero().extend(handedness).to_array();
+            }
+        }
+    }
+}
+
 /// Adds tangents for `normal_map`, splitting vertices where the triangles around one disagree.
 /// Returns false, and leaves the mesh as it was, without the texture coordinates that the map uses.
 pub(super) fn generate(mesh: &mut Mesh, normal_map: &TextureRef) -> bool {
@@ -52,24 +73,14 @@ pub(super) fn generate(mesh: &mut Mesh, normal_map: &TextureRef) -> bool {
     let transform = Affine2::from_cols_array(&[row_u[0], row_v[0], row_u[1], row_v[1], row_u[2], row_v[2]]);
     let uv = uv.iter().map(|&uv| transform.transform_point2(Vec2::from(uv)).to_array()).collect();
     let mut corners = Corners { mesh, uv, tangents: vec![[0.0, 0.0, 0.0, 1.0]; 3 * mesh.triangles.len()] };
-    run(&mut corners);
+    if largest_valence(corners.mesh) <= MAX_VALENCE {
+        bevy_mikktspace::generate_tangents(&mut corners);
+    } else {
+        corners.follow_each_triangle();
+    }
     let tangents = corners.tangents;
     weld(mesh, &tangents);
     true
-}
-
-/// mikktspace recurses once for each triangle around a vertex: a fan of a million needs a stack to match.
-/// Where the system refuses one, tangents stay zero and the caller's repair replaces them.
-fn run(corners: &mut Corners) {
-    let valence = largest_valence(corners.mesh);
-    if valence < 1000 {
-        bevy_mikktspace::generate_tangents(corners);
-        return;
-    }
-    std::thread::scope(|scope| {
-        let builder = std::thread::Builder::new().stack_size((1 << 20) + valence * 1024);
-        let _ = builder.spawn_scoped(scope, || bevy_mikktspace::generate_tangents(corners)).map(|thread| thread.join());
-    });
 }
 
 /// Corners at the most crowded position.
