@@ -23,8 +23,8 @@ pub const GLASS_ROUGHNESSES: usize = 16;
 pub const GLASS_IORS: usize = 17;
 /// Largest signed square root of (eta - 1) / (eta + 1), up to eta = 3.1, chosen so that eta = 1.5, the usual one, is a node: 8/5 sqrt(1/5).
 pub const GLASS_IOR_RANGE: f64 = 0.715_541_752_799_933;
-/// Where reflection alone is integrated over bounded normals, few points are enough.
-const REFLECTION_LATTICE: Lattice = Lattice { points: 144, generator: 89 };
+
+const REFLECTION_LATTICE: Lattice = Lattice { points: 610, generator: 377 };
 const BOUNDARY_LATTICE: Lattice = Lattice { points: 377, generator: 233 };
 
 /// Fibonacci lattice of the unit square: point i is (i, i * generator mod points) / points.

@@ -1,0 +1,9 @@
+//! What only holds in the mean: sampling follows its densities, estimators agree with analytic answers. Every test has fixed
+//! seeds and states how often it would fail by chance.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../common/surface.rs"]
+mod surface;
+
+mod furnace;
