@@ -1,11 +1,10 @@
-// Where a secondary ray starts so that it neither hits its own surface nor leaks through the next one.
+// Where a secondary ray starts, so that it neither meets the surface that it leaves nor skips the next one.
 //
 // Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th edition, section 6.8: the hit point comes from barycentrics, not from
-// t, with a bound on its rounding error (6.8.5) carried through the instance's transform (6.8.6); the origin moves along the
-// geometric normal just out of the box of that error (6.8.6, offset ray origins). The bound scales with the coordinates, so a scene
-// of any size behaves the same.
-// Deviations and why: a traversal that transforms the ray into mesh space rounds once more there, by as much as the transform of the
-// point; ERROR_SCALE covers both ways.
+// the distance, with a bound on its rounding error (6.8.5) carried through the instance's transform; the origin moves along the
+// geometric normal just out of that box. The bound follows the coordinates, so scenes of 10^-3 m and of 10^6 m behave alike.
+// Deviations and why: pbrt gives what the next ray loses on its way back into mesh space, and in the triangle test, to that ray's t_min;
+// traversals here start at t_min = 0, so it is part of this bound.
 #ifndef LIB_RAY_OFFSET_GLSL
 #define LIB_RAY_OFFSET_GLSL
 
@@ -14,56 +13,66 @@
 const uint RAY_OFFSET_ERROR_BOUND = 0u;
 /// Metres, for RAY_OFFSET epsilon.
 const float FIXED_OFFSET = 1e-4;
-/// gamma(n) = n u / (1 - n u), u = 2^-24.
-const float UNIT_ROUNDOFF = 5.9604645e-8;
-const float GAMMA_3 = 3.0 * UNIT_ROUNDOFF;
-const float GAMMA_7 = 7.0 * UNIT_ROUNDOFF;
-const float ERROR_SCALE = 2.0;
-/// A shadow ray ends this fraction of the way to its light: rounding of its direction and length, and of the point on the light.
+/// n roundings of up to 2^-24 each; second-order terms are far below what `leave_surface` adds.
+const float ROUNDING = 5.9604645e-8;
+/// Interpolation, 7, and the next ray's triangle test: differences to the corners, shear, edges and weighted sum, 9.
+const float TRIANGLE_ROUNDINGS = 16.0 * ROUNDING;
+/// Three products and sums of an affine transform, its translation, and the matrix' own elements.
+const float TRANSFORM_ROUNDINGS = 5.0 * ROUNDING;
+/// A shadow ray ends this share of the way to its light: rounding of direction, length and the point on the light.
 const float SHADOW_RAY_END = 1.0 - 1e-4;
 
+/// World space, relative to the frame's origin, metres.
 struct RayOrigin {
     vec3 position;
-    /// Largest rounding error of each coordinate.
+    /// Largest error of each coordinate.
     vec3 error;
     /// Unit, geometric, either side.
     vec3 normal;
 };
 
-vec3 transform_rows(vec4 rows[3], vec3 v) {
+vec3 affine_linear(vec4 rows[3], vec3 v) {
     return vec3(dot(rows[0].xyz, v), dot(rows[1].xyz, v), dot(rows[2].xyz, v));
 }
 
-vec3 transform_absolute(vec4 rows[3], vec3 v) {
+vec3 affine_absolute(vec4 rows[3], vec3 v) {
     return vec3(dot(abs(rows[0].xyz), v), dot(abs(rows[1].xyz), v), dot(abs(rows[2].xyz), v));
+}
+
+vec3 affine_translation(vec4 rows[3]) {
+    return vec3(rows[0].w, rows[1].w, rows[2].w);
+}
+
+/// Corners in mesh space; barycentrics weigh p1 and p2; `normal` is geometric, in the world.
+RayOrigin ray_origin(Instance instance, vec3 p0, vec3 p1, vec3 p2, vec2 barycentrics, vec3 normal) {
+    vec3 part0 = (1.0 - barycentrics.x - barycentrics.y) * p0;
+    vec3 part1 = barycentrics.x * p1;
+    vec3 part2 = barycentrics.y * p2;
+    vec3 point = part0 + part1 + part2;
+    vec3 translation = affine_translation(instance.object_to_world);
+    vec3 position = affine_linear(instance.object_to_world, point) + translation;
+
+    vec3 magnitude = abs(part0) + abs(part1) + abs(part2);
+    vec3 forth = affine_absolute(instance.object_to_world, magnitude) + abs(translation);
+    vec3 back = affine_absolute(instance.world_to_object, abs(position)) + abs(affine_translation(instance.world_to_object));
+    vec3 object_error = TRIANGLE_ROUNDINGS * magnitude + TRANSFORM_ROUNDINGS * back;
+    return RayOrigin(position, TRANSFORM_ROUNDINGS * forth + affine_absolute(instance.object_to_world, object_error), normal);
 }
 
 RayOrigin ray_origin_of_hit(Instance instance, Mesh mesh, uvec3 corners, vec2 barycentrics, vec3 normal) {
     Vec3Buffer positions = Vec3Buffer(mesh.positions);
-    vec3 weighted0 = (1.0 - barycentrics.x - barycentrics.y) * positions.at[corners.x];
-    vec3 weighted1 = barycentrics.x * positions.at[corners.y];
-    vec3 weighted2 = barycentrics.y * positions.at[corners.z];
-    vec3 object = weighted0 + weighted1 + weighted2;
-    vec3 object_error = GAMMA_7 * (abs(weighted0) + abs(weighted1) + abs(weighted2));
-    vec3 translation = vec3(instance.object_to_world[0].w, instance.object_to_world[1].w, instance.object_to_world[2].w);
-    RayOrigin origin;
-    origin.position = transform_rows(instance.object_to_world, object) + translation;
-    origin.error = GAMMA_3 * (transform_absolute(instance.object_to_world, abs(object)) + abs(translation))
-        + (1.0 + GAMMA_3) * transform_absolute(instance.object_to_world, object_error);
-    origin.normal = normal;
-    return origin;
+    return ray_origin(instance, positions.at[corners.x], positions.at[corners.y], positions.at[corners.z], barycentrics, normal);
 }
 
-/// Origin for a ray that leaves along `direction`, on that side of the surface.
+/// Origin of a ray that leaves along `direction`, on that side of the surface.
 vec3 leave_surface(RayOrigin origin, vec3 direction) {
-    float side = dot(origin.normal, direction) < 0.0 ? -1.0 : 1.0;
+    vec3 outwards = dot(origin.normal, direction) < 0.0 ? -origin.normal : origin.normal;
     if (RAY_OFFSET != RAY_OFFSET_ERROR_BOUND) {
-        return origin.position + side * FIXED_OFFSET * origin.normal;
+        return origin.position + FIXED_OFFSET * outwards;
     }
-    float reach = ERROR_SCALE * dot(abs(origin.normal), origin.error);
-    vec3 moved = origin.position + side * reach * origin.normal;
-    // The sum rounds by up to half a unit in the last place: outwards.
-    return moved + side * sign(origin.normal) * abs(moved) * UNIT_ROUNDOFF;
+    vec3 moved = origin.position + dot(abs(origin.normal), origin.error) * outwards;
+    // The sum rounds, too: on to the next float outwards.
+    return moved + sign(outwards) * abs(moved) * (2.0 * ROUNDING);
 }
 
 #endif

@@ -57,7 +57,7 @@ impl Aabb {
         if self.is_empty() {
             return Self::EMPTY;
         }
-        let (min, max) = (DVec3::from(self.min.as_dvec3()), DVec3::from(self.max.as_dvec3()));
+        let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());
         let centre = matrix.transform_point3((min + max) * 0.5);
         let half = (max - min) * 0.5;
         let reach = matrix.x_axis.truncate().abs() * half.x

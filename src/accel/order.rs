@@ -5,52 +5,67 @@
 
 use super::bounds::Aabb;
 use super::tree::{Item, Limits, Tree};
-use crate::scene::Mesh;
+use crate::scene::transform::world_transforms;
+use crate::scene::{Instance, Local, Mesh, Scene};
 use crate::shared::BVH_MESH_DEPTH;
+use glam::DVec3;
 use rayon::prelude::*;
 
 /// Triangles per leaf at most: 2, 4 and 8 trace equally fast, and 4 takes less memory than 2.
 const MESH_LIMITS: Limits = Limits { leaf: 4, depth: BVH_MESH_DEPTH };
 
-/// A mesh's tree and the order of triangles that it was built in.
+/// A mesh's tree, over its ordered triangles.
 #[derive(Debug, Clone, Default)]
-pub struct SpatialOrder {
-    /// Triangle i of the ordered mesh is triangle `triangles[i]` of the scene's.
-    pub triangles: Vec<u32>,
-    /// Over the ordered triangles.
+pub struct MeshTree {
     pub tree: Tree,
-    /// Of the vertices that triangles use.
+    /// Of all its triangles.
     pub bounds: Aabb,
 }
 
-impl SpatialOrder {
-    /// `values`, one per triangle of the scene's mesh, in the new order.
-    pub fn apply<T: Copy + Send + Sync>(&self, values: &[T]) -> Vec<T> {
-        self.triangles.par_iter().map(|&triangle| values[triangle as usize]).collect()
-    }
+/// Puts the triangles of every mesh, and the instances, into spatial order; returns each mesh's tree. Runs on all threads.
+pub fn order_scene(scene: &mut Scene) -> Vec<MeshTree> {
+    let trees: Vec<MeshTree> = scene.meshes.iter_mut().map(order_mesh).collect();
+    order_instances(scene, &trees);
+    trees
 }
 
-/// Builds a mesh's tree, on all threads.
-pub fn spatial_order(mesh: &Mesh) -> SpatialOrder {
+fn order_mesh(mesh: &mut Mesh) -> MeshTree {
     let corner = |index: u32| mesh.positions[index as usize];
     let item = |(index, triangle): (usize, &[u32; 3])| Item { bounds: Aabb::of_points(triangle.map(corner)), index: index as u32 };
     let mut items: Vec<Item> = mesh.triangles.par_iter().enumerate().map(item).collect();
     let tree = Tree::build(&mut items, MESH_LIMITS);
     let bounds = items.par_iter().map(|item| item.bounds).reduce(|| Aabb::EMPTY, Aabb::union);
-    SpatialOrder { triangles: items.par_iter().map(|item| item.index).collect(), tree, bounds }
+    mesh.triangles = in_order(&items, &mesh.triangles);
+    mesh.triangle_materials = in_order(&items, &mesh.triangle_materials);
+    MeshTree { tree, bounds }
 }
 
-/// Order of instances along a Morton curve through the centres of their world bounds: place i holds instance `order[i]`.
-pub fn instance_order(world_bounds: &[Aabb]) -> Vec<u32> {
-    let centres = Aabb::of_points(world_bounds.iter().map(|bounds| bounds.centre().to_array()));
-    let scale = 1023.0 / centres.extent().max_element().max(f32::MIN_POSITIVE);
-    let key = |bounds: &Aabb| {
-        let cell = (bounds.centre() - centres.min) * scale;
-        spread(cell.x as u32) | spread(cell.y as u32) << 1 | spread(cell.z as u32) << 2
+/// `values`, one per triangle, in the order of `items`; where there are none, none.
+fn in_order<T: Copy + Send + Sync>(items: &[Item], values: &[T]) -> Vec<T> {
+    if values.is_empty() { Vec::new() } else { items.par_iter().map(|item| values[item.index as usize]).collect() }
+}
+
+/// Along a Morton curve through the centres of their world bounds at time 0.
+fn order_instances(scene: &mut Scene, trees: &[MeshTree]) {
+    let locals: Vec<Local> = scene.nodes.iter().map(|node| node.local).collect();
+    let world = world_transforms(&scene.nodes, &locals);
+    let centre = |instance: &Instance| {
+        let bounds = trees[instance.mesh as usize].bounds;
+        world[instance.node as usize].transform_point3(if bounds.is_empty() { DVec3::ZERO } else { bounds.centre().as_dvec3() })
     };
-    let mut order: Vec<u32> = (0..world_bounds.len() as u32).collect();
-    order.sort_by_key(|&instance| key(&world_bounds[instance as usize]));
-    order
+    let centres: Vec<DVec3> = scene.instances.iter().map(centre).collect();
+    let low = centres.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = centres.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let scale = 1023.0 / (high - low).max_element().max(f64::MIN_POSITIVE);
+    let mut keyed: Vec<(u32, Instance)> =
+        scene.instances.iter().zip(&centres).map(|(instance, centre)| (morton((centre - low) * scale), *instance)).collect();
+    keyed.sort_by_key(|(key, _)| *key);
+    scene.instances = keyed.into_iter().map(|(_, instance)| instance).collect();
+}
+
+/// Interleaves ten bits of each coordinate, which lie in 0..1024.
+fn morton(cell: DVec3) -> u32 {
+    spread(cell.x as u32) | spread(cell.y as u32) << 1 | spread(cell.z as u32) << 2
 }
 
 /// Two zero bits between each of the lowest ten.
@@ -61,8 +76,9 @@ fn spread(value: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Node;
     use crate::shared::{BVH_COUNT_SHIFT, BVH_EMPTY, BVH_FIRST_MASK, BVH_LEAF};
-    use glam::Vec3A;
+    use glam::{DMat4, Vec3A};
     use rand::{Rng, SeedableRng};
 
     fn mesh_of(corners: impl Iterator<Item = [[f32; 3]; 3]>) -> Mesh {
@@ -81,10 +97,9 @@ mod tests {
     }
 
     /// Every triangle lies in one leaf and inside every box above it; returns the longest way in inner nodes.
-    fn check(mesh: &Mesh) -> u32 {
-        let order = spatial_order(mesh);
-        let triangles = order.apply(&mesh.triangles);
-        let mut seen = vec![false; triangles.len()];
+    fn check(mut mesh: Mesh) -> u32 {
+        let order = order_mesh(&mut mesh);
+        let mut seen = vec![false; mesh.triangles.len()];
         let mut deepest = 0;
         let mut pending = vec![(order.tree.root, order.bounds, 0)];
         while let Some((child, bounds, depth)) = pending.pop() {
@@ -101,7 +116,7 @@ mod tests {
             let (first, count) = (child & BVH_FIRST_MASK, (child >> BVH_COUNT_SHIFT & 3) + 1);
             for triangle in first..first + count {
                 assert!(!std::mem::replace(&mut seen[triangle as usize], true), "a triangle is in two leaves");
-                let corners = triangles[triangle as usize].map(|vertex| mesh.positions[vertex as usize]);
+                let corners = mesh.triangles[triangle as usize].map(|vertex| mesh.positions[vertex as usize]);
                 assert_eq!(bounds.union(Aabb::of_points(corners)), bounds, "a triangle leaves its box");
             }
         }
@@ -112,7 +127,7 @@ mod tests {
     #[test]
     fn every_triangle_is_in_one_leaf_and_inside_its_boxes() {
         for count in [0, 1, 4, 5, 100, 20_000] {
-            assert!(check(&random_mesh(count, 1.0)) <= 30);
+            assert!(check(random_mesh(count, 1.0)) <= 30);
         }
     }
 
@@ -125,7 +140,7 @@ mod tests {
         }));
         let along_a_line = mesh_of((0..50_000).map(|i| [[i as f32; 3], [i as f32 + 0.5; 3], [i as f32 + 0.7; 3]]));
         for mesh in [same, teapots_in_stadiums, along_a_line, random_mesh(9999, 1e-30), random_mesh(9999, 1e37)] {
-            assert!(check(&mesh) <= BVH_MESH_DEPTH);
+            assert!(check(mesh) <= BVH_MESH_DEPTH);
         }
     }
 
@@ -156,9 +171,21 @@ mod tests {
     }
 
     #[test]
+    fn triangles_keep_their_materials() {
+        let mut mesh = random_mesh(1000, 1.0);
+        mesh.triangle_materials = mesh.triangles.iter().map(|triangle| triangle[0] / 3 % 7).collect();
+        order_mesh(&mut mesh);
+        assert!(mesh.triangles.iter().zip(&mesh.triangle_materials).all(|(triangle, &material)| triangle[0] / 3 % 7 == material));
+    }
+
+    #[test]
     fn instances_that_lie_together_stay_together() {
-        let bounds: Vec<Aabb> =
-            [0.0, 100.0, 1.0, 101.0, 2.0].iter().map(|&x| Aabb::of_points([[x, 0.0, 0.0], [x + 0.1, 1.0, 1.0]])).collect();
-        assert_eq!(instance_order(&bounds), [0, 2, 4, 1, 3]);
+        let node =
+            |x: f64| Node { name: String::new(), parent: None, local: Local::Matrix(DMat4::from_translation(DVec3::new(x, 0.0, 0.0))) };
+        let nodes: Vec<Node> = [0.0, 1e6, 1.0, 1e6 + 1.0, 2.0].map(node).into();
+        let instances = (0..5).map(|node| Instance { mesh: 0, node }).collect();
+        let mut scene = Scene { nodes, instances, meshes: vec![random_mesh(2, 1.0)], ..Scene::default() };
+        order_scene(&mut scene);
+        assert_eq!(scene.instances.iter().map(|instance| instance.node).collect::<Vec<_>>(), [0, 2, 4, 1, 3]);
     }
 }
