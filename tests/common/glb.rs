@@ -1,4 +1,7 @@
 //! Tiny glTF files made in memory.
+//!
+//! Each test binary uses its own part of this.
+#![allow(dead_code)]
 
 use serde_json::{Value, json};
 

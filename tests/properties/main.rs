@@ -9,5 +9,8 @@ mod builtin;
 mod effects;
 mod gpu_kernel;
 mod metrics;
+mod scene_animation;
+mod scene_materials;
 mod scene_meshes;
+mod scene_nodes;
 mod scene_shared;
