@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::glb::{FLOAT, Glb, UNSIGNED_BYTE, png};
 
 fn refused(glb: &Glb, parts: &[&str]) {
-    let error = glb.load().err().expect("the file must be refused");
+    let error = glb.load().expect_err("the file must be refused");
     for part in parts {
         assert!(error.contains(part), "'{part}' is not in: {error}");
     }
