@@ -85,3 +85,33 @@ fn p_value(a: &Estimate, b: &Estimate, pixels: &[usize], channel: usize) -> f64 
     }
     two_sided_p(difference / variance.sqrt(), variance * variance / spread_of_variance)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grey(values: [f32; 4]) -> Image {
+        Image::new(2, 2, values.map(|value| [value; 3]).to_vec())
+    }
+
+    fn compare(a: &Image, b: &Image) -> ZTest {
+        let nothing = grey([0.0; 4]);
+        let exact = |mean| Estimate { mean, variance: &nothing, batches: None };
+        z_test(exact(a), exact(b), 1, 0.01).unwrap()
+    }
+
+    #[test]
+    fn where_nothing_varies_any_difference_beyond_rounding_is_rejected() {
+        let image = grey([0.0, 1.0, 100.0, 1e-6]);
+        assert!(compare(&image, &grey([0.0, 1.0 + f32::EPSILON, 100.0, 1e-6])).passed());
+        let result = compare(&image, &grey([0.0, 1.0, 100.01, 1e-6]));
+        assert_eq!((result.tests, result.rejected, result.smallest_p, result.worst), (12, 3, 0.0, (0, 1)));
+    }
+
+    #[test]
+    fn estimates_of_two_sizes_are_an_error() {
+        let (image, pixel) = (grey([0.0; 4]), Image::new(1, 1, vec![[0.0; 3]]));
+        let estimate = Estimate { mean: &image, variance: &pixel, batches: None };
+        assert!(matches!(z_test(estimate, estimate, 1, 0.01), Err(MetricError::SizesDiffer { .. })));
+    }
+}
