@@ -12,7 +12,7 @@ pub mod render;
 
 use anyhow::Context;
 use clap::Parser;
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 use tracing_subscriber::EnvFilter;
 
@@ -100,7 +100,13 @@ fn start_log(cli: &Cli) -> anyhow::Result<()> {
         Ok(directives) => EnvFilter::try_new(&directives).with_context(|| format!("PATHSPACE_LOG='{directives}' is not a log filter"))?,
         Err(_) => EnvFilter::new(level),
     };
-    tracing_subscriber::fmt().with_env_filter(filter).with_writer(|| progress::BarAwareStderr).without_time().with_target(false).init();
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(|| progress::BarAwareStderr)
+        .with_ansi(std::io::stderr().is_terminal())
+        .without_time()
+        .with_target(false)
+        .init();
     Ok(())
 }
 

@@ -118,6 +118,7 @@ fn pictures_too_small_for_ssim_have_the_other_metrics() {
     let result = run(directory.path(), &["diff", "small.exr", "small.exr"]);
     assert_eq!(result.code, Some(0));
     assert!(!result.stdout.contains("ssim") && result.stdout.contains("flip") && result.stderr.contains("11x11"));
+    assert!(!result.stderr.contains('\u{1b}'), "no colours where stderr is no terminal");
     assert_eq!(run(directory.path(), &["-q", "diff", "small.exr", "small.exr"]).stderr, "");
 }
 
