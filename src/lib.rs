@@ -10,4 +10,5 @@ pub mod scene;
 pub mod accel;
 pub mod paths;
 pub mod display;
+pub mod technique;
 pub mod metrics;

@@ -2,8 +2,19 @@
 
 use super::Outcome;
 use super::arguments::{self, Size};
-use crate::display::{ToneCurve, ToneMapping};
+use super::output::{print_result, write_atomically, write_picture};
+use super::progress::Progress;
+use crate::display::{ExrContents, ToneCurve, ToneMapping};
+use crate::gpu::{DeviceOptions, Gpu};
+use crate::scene::{CameraView, Environment, Scene};
+use crate::technique::{self, Parameters, Renderer, Settings, Technique, ViewChoice};
+use anyhow::{Context, anyhow};
+use glam::DVec3;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Samples per pixel of a technique that accumulates, where nothing is said.
+const DEFAULT_SAMPLES: u32 = 64;
 
 /// Render a glTF scene, or a built-in one, to EXR and PNG files
 #[derive(Debug, clap::Args)]
@@ -97,6 +108,119 @@ impl Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+    let technique = technique::find(&args.technique).ok_or_else(|| unknown_technique(&args.technique))?;
+    let parameters = args.parameters(technique)?;
     super::output::check_writable(args.outputs())?;
-    anyhow::bail!("'pathspace render' is not part of this build")
+    let scene = args.load_scene()?;
+    let gpu = Gpu::open(&DeviceOptions { device: args.device.clone(), ..Default::default() })?;
+    let (spp, frames) = args.samples(technique);
+    let settings = Settings {
+        extent: [args.size.width, args.size.height],
+        spp,
+        technique,
+        trace: args.trace.clone(),
+        parameters,
+        all_effects: args.effects == EffectChoice::All,
+        seed: args.seed,
+        fps: args.fps,
+        view: args.view(),
+        outputs: args.aov.iter().map(|(name, _)| name.clone()).collect(),
+    };
+    let mut renderer = Renderer::new(&gpu, scene, settings)?;
+    render_frames(&mut renderer, frames, args.size, spp)?;
+    args.write(&mut renderer, spp, frames)?;
+    Ok(Outcome::Done)
+}
+
+/// How often the error is estimated; it costs a wait for the device.
+const ESTIMATE_EVERY: Duration = Duration::from_secs(2);
+
+fn render_frames(renderer: &mut Renderer, frames: u32, size: Size, spp: u32) -> anyhow::Result<()> {
+    let samples = u64::from(size.width) * u64::from(size.height) * u64::from(spp);
+    let progress = Progress::new("rendering", samples * u64::from(frames), "samples");
+    let mut estimated = Instant::now();
+    for _ in 0..frames {
+        renderer.render_frame()?;
+        progress.advance(samples);
+        if estimated.elapsed() > ESTIMATE_EVERY {
+            if let Some(error) = renderer.relative_error()? {
+                progress.error_estimate(error);
+            }
+            estimated = Instant::now();
+        }
+    }
+    Ok(renderer.finish()?)
+}
+
+fn unknown_technique(name: &str) -> anyhow::Error {
+    let known: Vec<String> = technique::REGISTRY.iter().map(|t| format!("\n  {}: {}", t.name, t.help)).collect();
+    anyhow!("there is no technique '{name}'; there are:{}", known.concat())
+}
+
+impl Args {
+    fn parameters(&self, technique: &Technique) -> anyhow::Result<Parameters> {
+        let mut parameters = Parameters::default();
+        for (key, value) in technique.defaults {
+            parameters.set(key, value)?;
+        }
+        for (key, value) in &self.set {
+            parameters.set(key, value)?;
+        }
+        if let Some(bounces) = self.max_bounces {
+            parameters.set("paths.max_bounces", &bounces.to_string())?;
+        }
+        Ok(parameters)
+    }
+
+    /// Samples per pixel and frame, and frames.
+    fn samples(&self, technique: &Technique) -> (u32, u32) {
+        let frames = if technique.accumulates && self.spp.is_none() { DEFAULT_SAMPLES } else { 1 };
+        (self.spp.unwrap_or(1), self.frames.unwrap_or(frames))
+    }
+
+    fn load_scene(&self) -> anyhow::Result<Scene> {
+        let mut scene = super::inspect::load(&self.scene)?;
+        if let Some(path) = &self.environment {
+            let (environment, warnings) = Environment::load(path)?;
+            scene.environment = environment;
+            scene.warnings.extend(warnings);
+        }
+        if let Some(radiance) = self.background {
+            scene.environment = Environment::Constant(radiance);
+        }
+        for warning in &scene.warnings {
+            tracing::warn!("{} ({})", warning.message, warning.count);
+        }
+        Ok(scene)
+    }
+
+    fn view(&self) -> ViewChoice {
+        let (Some(eye), Some(target)) = (self.eye, self.target) else { return ViewChoice::Scene(self.camera.clone()) };
+        let place = |point: [f32; 3]| DVec3::from_array(point.map(f64::from));
+        ViewChoice::Fixed(CameraView::look_at(place(eye), place(target), self.vfov.unwrap_or(45.0).to_radians()))
+    }
+
+    fn write(&self, renderer: &mut Renderer, spp: u32, frames: u32) -> anyhow::Result<()> {
+        let attributes = [
+            ("scene", self.scene.clone()),
+            ("technique", self.technique.clone()),
+            ("spp", spp.to_string()),
+            ("frames", frames.to_string()),
+            ("seed", self.seed.to_string()),
+        ];
+        let picture = renderer.picture()?;
+        for path in &self.output {
+            let contents = ExrContents { image: &picture, beside: &[], attributes: &attributes };
+            write_picture(path, &contents, &self.tone_mapping())?;
+        }
+        for (name, path) in &self.aov {
+            let image = renderer.output(name)?.with_context(|| format!("there is no output '{name}'"))?;
+            write_picture(path, &ExrContents { image: &image, beside: &[], attributes: &attributes }, &self.tone_mapping())?;
+        }
+        let timings = renderer.timings()?;
+        if let Some(path) = &self.timings {
+            write_atomically(path, |file| serde_json::to_writer_pretty(file, &timings))?;
+        }
+        print_result(&timings.to_string())
+    }
 }

@@ -72,8 +72,8 @@ impl<'a> FrameBuilder<'a> {
         PassBuilder { name, shader, uses: Vec::new(), constants: self.constants.clone(), frame: self }
     }
 
-    pub fn build(self) -> Result<FrameGraph, GpuError> {
-        Ok(FrameGraph { images: self.images, passes: self.passes })
+    pub fn build(self) -> FrameGraph {
+        FrameGraph { images: self.images, passes: self.passes }
     }
 
     /// Whether a pass with these uses must wait for the ones before it.
@@ -185,6 +185,10 @@ impl FrameGraph {
     /// Everything that a pass puts out, by name.
     pub fn images(&self) -> impl Iterator<Item = (&'static str, &Image)> {
         self.images.iter().map(|(name, image)| (*name, image))
+    }
+
+    pub fn image_of(&self, handle: ImageHandle) -> &Image {
+        &self.images[handle.0].1
     }
 
     pub fn image(&self, name: &str) -> Option<&Image> {

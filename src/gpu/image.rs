@@ -103,6 +103,11 @@ impl Image {
         u64::from(width) * u64::from(height) * texel_bytes(self.info.format)
     }
 
+    /// Device memory that it takes, all levels.
+    pub fn allocated_bytes(&self) -> u64 {
+        self.allocation.as_ref().map_or(0, |allocation| allocation.size())
+    }
+
     pub(super) fn range(&self) -> vk::ImageSubresourceRange {
         let color = vk::ImageAspectFlags::COLOR;
         vk::ImageSubresourceRange::default().aspect_mask(color).level_count(self.info.mip_levels).layer_count(1)

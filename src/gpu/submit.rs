@@ -40,8 +40,10 @@ impl FrameRing {
         Ok(ring)
     }
 
-    pub fn slots(&self) -> usize {
-        self.slots.len()
+    /// All slots, that of the earliest frame first.
+    pub fn oldest_first(&self) -> impl Iterator<Item = usize> + use<> {
+        let (next, count) = (self.next, self.slots.len());
+        (0..count).map(move |i| (next + i) % count)
     }
 
     /// Waits for the next slot's last frame and returns the slot's number.

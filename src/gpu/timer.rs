@@ -36,11 +36,11 @@ impl Timer {
         unsafe { self.gpu.raw().cmd_write_timestamp(commands.raw(), vk::PipelineStageFlags::BOTTOM_OF_PIPE, self.pool, index) };
     }
 
-    /// Milliseconds between neighbouring marks of the last frame, which must be done; nothing before the first frame and on devices
-    /// without timestamps.
-    pub fn read(&mut self) -> impl Iterator<Item = f64> + '_ {
+    /// Milliseconds between neighbouring marks of the last frame, which must be done; nothing where that has been taken already, and
+    /// on devices without timestamps.
+    pub fn take(&mut self) -> impl Iterator<Item = f64> + '_ {
         let period = f64::from(self.gpu.capabilities().timestamp_period) * 1e-6;
-        let available = self.recorded && self.gpu.capabilities().timestamps;
+        let available = std::mem::take(&mut self.recorded) && self.gpu.capabilities().timestamps;
         // SAFETY: the results are as long as the pool; the frame is done, so they are there without waiting.
         let mut read = || unsafe { self.gpu.raw().get_query_pool_results(self.pool, 0, &mut self.ticks, vk::QueryResultFlags::TYPE_64) };
         let marks = if available && read().is_ok() { self.ticks.as_slice() } else { &[] };

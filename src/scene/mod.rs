@@ -17,6 +17,7 @@ pub mod gltf;
 pub mod lights;
 pub mod material;
 pub mod packing;
+pub mod placed;
 pub mod pose;
 pub mod texture;
 pub mod transform;

@@ -5,8 +5,8 @@
 //! anything keyed by `position + origin` stays in place when it moves.
 
 use super::camera::CameraView;
-use super::transform::{compose, flips_winding};
-use super::{Local, Projection, Scene};
+use super::transform::{compose, flips_winding, world_transforms};
+use super::{AlphaMode, Instance, Local, Mesh, Projection, Scene};
 use crate::shared;
 use glam::{DMat4, DVec3};
 
@@ -22,13 +22,23 @@ pub struct Pose {
     /// Half the diagonal of the scene's bounds, metres.
     radius: f64,
     instances: Vec<shared::Instance>,
+    /// Counts changes.
+    version: u64,
 }
 
 impl Pose {
-    /// At time 0, seen from `view`. `instances` gives flags and first light of each instance of the scene.
-    pub fn new(scene: &Scene, view: CameraView, instances: Vec<shared::Instance>) -> Self {
+    /// At time 0, seen from `view`. `first_lights`: [`shared::Instance::first_light`] of each instance.
+    pub fn new(scene: &Scene, view: CameraView, first_lights: impl Iterator<Item = u32>) -> Self {
         let locals: Vec<Local> = scene.animation.sample(&scene.nodes, 0.0);
-        let world = super::transform::world_transforms(&scene.nodes, &locals);
+        let world = world_transforms(&scene.nodes, &locals);
+        let alpha: Vec<bool> = scene.meshes.iter().map(|mesh| has_alpha(scene, mesh)).collect();
+        let row = |(instance, first_light): (&Instance, u32)| shared::Instance {
+            mesh: instance.mesh,
+            first_light,
+            flags: if alpha[instance.mesh as usize] { shared::INSTANCE_ALPHA } else { 0 },
+            ..Default::default()
+        };
+        let instances = scene.instances.iter().zip(first_lights).map(row).collect();
         let radius = scene.bounds(&world).map_or(1.0, |(low, high)| 0.5 * (high - low).length()).max(f64::MIN_POSITIVE);
         let mut pose = Self {
             locals,
@@ -38,21 +48,23 @@ impl Pose {
             step: radius.log2().ceil().exp2(),
             radius,
             instances,
+            version: 0,
         };
         pose.rebase();
         pose.place_instances(scene);
         pose
     }
 
-    /// Moves on to `time`, seconds; `view` is where it is seen from, given the world matrices.
-    pub fn advance(&mut self, scene: &Scene, time: f64, view: impl FnOnce(&[DMat4]) -> CameraView) {
+    /// Moves on to `time`, seconds; `view` is where it is seen from, given the world matrices. After an error the pose is half-way.
+    pub fn advance<E>(&mut self, scene: &Scene, time: f64, view: impl FnOnce(&[DMat4]) -> Result<CameraView, E>) -> Result<(), E> {
         scene.animation.sample_into(&scene.nodes, time, &mut self.locals);
         self.world.swap(0, 1);
         self.view.swap(0, 1);
         compose(&scene.nodes, &self.locals, &mut self.world[0]);
-        self.view[0] = view(&self.world[0]);
+        self.view[0] = view(&self.world[0])?;
         self.rebase();
         self.place_instances(scene);
+        Ok(())
     }
 
     fn rebase(&mut self) {
@@ -60,6 +72,7 @@ impl Pose {
     }
 
     fn place_instances(&mut self, scene: &Scene) {
+        self.version += 1;
         let to_origin = DMat4::from_translation(-self.origin);
         for (placed, instance) in self.instances.iter_mut().zip(&scene.instances) {
             let [now, before] = [0, 1].map(|frame| to_origin * self.world[frame][instance.node as usize]);
@@ -69,6 +82,11 @@ impl Pose {
             let mirrored = if flips_winding(&now) { shared::INSTANCE_MIRRORED } else { 0 };
             placed.flags = placed.flags & !shared::INSTANCE_MIRRORED | mirrored;
         }
+    }
+
+    /// Differs from that of every other pose of this scene before.
+    pub fn version(&self) -> u64 {
+        self.version
     }
 
     /// In the order of the scene's.
@@ -95,6 +113,11 @@ impl Pose {
     pub fn cameras(&self, extent: [u32; 2]) -> [shared::Camera; 2] {
         self.view.map(|view| camera(&view, self.origin, extent))
     }
+}
+
+/// Some triangle of the mesh is not simply there.
+fn has_alpha(scene: &Scene, mesh: &Mesh) -> bool {
+    mesh.triangle_materials.iter().any(|&material| scene.materials[material as usize].alpha_mode != AlphaMode::Opaque)
 }
 
 /// The upper three rows of an affine matrix.

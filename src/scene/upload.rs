@@ -3,9 +3,11 @@
 //! Bytes per triangle of a textured mesh with 0.6 vertices per triangle: 12 indices + 4 material + 0.6 x (12 position + 16 attributes)
 //! = 33, plus what the acceleration structure takes.
 
+use super::lights::emitter_ranks;
 use super::packing::{pack_normal, pack_tangent};
 use super::texture::{Filter, Texture, Wrap};
 use super::{AlphaMode, Material, Mesh, Scene, TextureRef};
+use crate::accel::{MeshGeometry, build_input_usage};
 use crate::gpu::{Buffer, Gpu, GpuError, ImageInfo, TextureImage, vk};
 use crate::shared;
 use bytemuck::Pod;
@@ -18,15 +20,6 @@ pub struct SceneBuffers {
     pub textures: Vec<TextureImage>,
     /// Vertices and triangles; kept for their addresses.
     _streams: Vec<Buffer>,
-}
-
-/// Where an acceleration structure finds a mesh: vec3 per vertex, uvec3 per triangle.
-#[derive(Debug, Clone, Copy)]
-pub struct MeshGeometry {
-    pub positions: u64,
-    pub vertex_count: u32,
-    pub triangles: u64,
-    pub triangle_count: u32,
 }
 
 /// One kind of data of all meshes, one after the other in one buffer.
@@ -50,13 +43,9 @@ impl Stream {
 }
 
 impl SceneBuffers {
-    /// `emitters`: for each mesh the rank of each triangle among the emissive ones, empty where none emits.
-    pub fn new(gpu: &Gpu, scene: &Scene, emitters: Vec<Vec<u32>>) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, GpuError> {
         let plain = vk::BufferUsageFlags::empty();
-        let input = match gpu.capabilities().ray_query {
-            true => vk::BufferUsageFlags::ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_KHR,
-            false => plain,
-        };
+        let input = build_input_usage(gpu.capabilities());
         let meshes = &scene.meshes;
         let positions = Stream::upload(gpu, "positions", input, per_mesh(meshes, |mesh| mesh.positions.clone()))?;
         let attributes = Stream::upload(gpu, "vertex attributes", plain, per_mesh(meshes, vertex_attributes))?;
@@ -64,7 +53,7 @@ impl SceneBuffers {
         let colors = Stream::upload(gpu, "vertex colours", plain, per_mesh(meshes, vertex_colors))?;
         let triangles = Stream::upload(gpu, "triangles", input, per_mesh(meshes, |mesh| mesh.triangles.clone()))?;
         let materials = Stream::upload(gpu, "triangle materials", plain, per_mesh(meshes, |mesh| mesh.triangle_materials.clone()))?;
-        let emitters = Stream::upload(gpu, "triangle emitters", plain, emitters)?;
+        let emitters = Stream::upload(gpu, "triangle emitters", plain, emitter_ranks(scene))?;
         let rows: Vec<shared::Mesh> = (0..meshes.len())
             .map(|i| shared::Mesh {
                 positions: positions.addresses[i],
@@ -90,6 +79,12 @@ impl SceneBuffers {
             textures: scene.textures.iter().map(|texture| upload_texture(gpu, texture)).collect::<Result<_, _>>()?,
             _streams: [positions, attributes, uv1, colors, triangles, materials, emitters].map(|stream| stream.buffer).into(),
         })
+    }
+}
+
+impl SceneBuffers {
+    pub fn texture_bytes(&self) -> u64 {
+        self.textures.iter().map(|texture| texture.image.allocated_bytes()).sum()
     }
 }
 

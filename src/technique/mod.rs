@@ -1,0 +1,48 @@
+//! Techniques: how few samples become a picture. Each is an ordered list of passes and a line in [`REGISTRY`], from which the command line,
+//! tests and measurements take them.
+
+pub mod parameters;
+mod reference;
+mod renderer;
+mod settings;
+mod timings;
+mod unfiltered;
+
+pub use parameters::{ParameterError, Parameters};
+pub use renderer::Renderer;
+pub use settings::{RenderError, Settings, ViewChoice};
+pub use timings::{PassTime, Timings};
+
+use crate::frame::{FrameBuilder, ImageHandle};
+use crate::gpu::GpuError;
+
+/// One way from samples to a picture.
+pub struct Technique {
+    pub name: &'static str,
+    /// One line for the user.
+    pub help: &'static str,
+    /// Its picture is the mean of all frames so far; else each frame stands alone.
+    pub accumulates: bool,
+    /// Most samples per pixel and frame.
+    pub max_spp: u32,
+    /// Parameters whose default differs here.
+    pub defaults: &'static [(&'static str, &'static str)],
+    /// Declares the passes; returns the picture.
+    pub(crate) passes: fn(&mut FrameBuilder, PassOptions) -> Result<ImageHandle, GpuError>,
+}
+
+/// What a technique's passes depend on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PassOptions {
+    /// Samples per pixel and frame.
+    pub spp: u32,
+    /// An output of the g-buffer was asked for, also where the technique itself does not need it.
+    pub gbuffer: bool,
+}
+
+pub static REGISTRY: [Technique; 2] = [reference::TECHNIQUE, unfiltered::TECHNIQUE];
+
+/// The technique of this name.
+pub fn find(name: &str) -> Option<&'static Technique> {
+    REGISTRY.iter().find(|technique| technique.name == name)
+}

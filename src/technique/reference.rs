@@ -1,0 +1,25 @@
+//! `reference`: path tracing, accumulated over any number of frames, with the variance of the result.
+
+use super::{PassOptions, Technique};
+use crate::display::accumulate;
+use crate::frame::{FrameBuilder, ImageHandle};
+use crate::gpu::GpuError;
+use crate::paths::{gbuffer, megakernel};
+
+pub(super) const TECHNIQUE: Technique = Technique {
+    name: "reference",
+    help: "path tracing without a filter, accumulated over all frames",
+    accumulates: true,
+    max_spp: u32::MAX,
+    // Many samples filter textures themselves, and better.
+    defaults: &[("textures.level", "zero")],
+    passes,
+};
+
+fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
+    if options.gbuffer {
+        gbuffer::add(frame)?;
+    }
+    let radiance = megakernel::add(frame, options.spp)?;
+    accumulate::add(frame, radiance)
+}

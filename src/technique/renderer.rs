@@ -1,0 +1,276 @@
+//! One scene, one technique, one device: frame after frame.
+
+use super::PassOptions;
+use super::settings::{RenderError, Settings};
+use super::timings::{BuildTimes, MemoryUse, RayCounts, Recorder, Timings};
+use crate::accel::{self, Structure};
+use crate::display;
+use crate::frame::{FrameBuilder, FrameGraph, Globals, GlobalsInfo, ImageHandle};
+use crate::gpu::{Buffer, FrameRing, Gpu, Image, Timer, vk};
+use crate::paths::{energy, gbuffer};
+use crate::scene::Scene;
+use crate::scene::effects::{Effect, EffectSet};
+use crate::scene::placed::PlacedScene;
+use crate::scene::pose::Pose;
+use crate::scene::transform::world_transforms;
+use crate::scene::upload::SceneBuffers;
+use crate::shared::{self, FrameData};
+use std::time::Instant;
+
+/// Frames that the host may be ahead of the device.
+const FRAMES_IN_FLIGHT: usize = 2;
+
+/// Everything that rendering one scene takes. Fields are dropped in order, users before what they use.
+pub struct Renderer {
+    ring: FrameRing,
+    timers: Vec<Timer>,
+    graph: FrameGraph,
+    picture: ImageHandle,
+    globals: Globals,
+    structure: Box<dyn Structure>,
+    placed: PlacedScene,
+    buffers: SceneBuffers,
+    energy_tables: Option<Buffer>,
+    pose: Pose,
+    scene: Scene,
+    settings: Settings,
+    parameters: shared::Parameters,
+    trace: &'static str,
+    recorder: Recorder,
+    build_ms: BuildTimes,
+    memory: MemoryUse,
+    frame: u32,
+    gpu: Gpu,
+}
+
+impl Renderer {
+    /// Orders the scene's triangles and instances, uploads it, builds its acceleration structure and compiles the passes.
+    ///
+    /// # Errors
+    /// An unknown camera, structure or output; more samples than the technique takes; what the device refuses.
+    pub fn new(gpu: &Gpu, mut scene: Scene, settings: Settings) -> Result<Self, RenderError> {
+        let technique = settings.technique;
+        if settings.spp > technique.max_spp {
+            return Err(RenderError::TooManySamples { technique: technique.name, most: technique.max_spp, asked: settings.spp });
+        }
+        let choice = accel::choose(&settings.trace, gpu.capabilities())?;
+        tracing::info!("rays are traced by {}: {}", choice.entry.name, choice.reason);
+        let (mut clock, mut build_ms, mut memory) = (Clock::start(), BuildTimes::default(), MemoryUse::default());
+        let trees = accel::order_scene(&mut scene);
+        build_ms.order = clock.lap();
+
+        let effects = if settings.all_effects { EffectSet::all() } else { EffectSet::derive(&scene) };
+        let before = gpu.allocated_bytes();
+        let buffers = SceneBuffers::new(gpu, &scene)?;
+        let placed = PlacedScene::new(gpu, &scene, FRAMES_IN_FLIGHT)?;
+        let energy_tables = if effects.contains(Effect::Glossy) || effects.contains(Effect::RoughTransmission) {
+            Some(gpu.upload("energy tables", &energy::energy_tables(), vk::BufferUsageFlags::empty())?)
+        } else {
+            None
+        };
+        let world = world_transforms(&scene.nodes, &scene.animation.sample(&scene.nodes, 0.0));
+        let pose = Pose::new(&scene, settings.view.at(&scene, &world)?, placed.lights().first_lights());
+        build_ms.upload = clock.lap();
+        memory.textures = buffers.texture_bytes();
+        memory.scene = gpu.allocated_bytes() - before - memory.textures;
+
+        let geometry = accel::Geometry { scene: &scene, meshes: &buffers.meshes, trees: &trees, frames_in_flight: FRAMES_IN_FLIGHT };
+        let structure = (choice.entry.build)(gpu, &geometry)?;
+        build_ms.structure = clock.lap();
+        memory.structure = structure.memory_bytes();
+
+        let before = gpu.allocated_bytes();
+        let top_levels = structure.top_levels();
+        let info = GlobalsInfo { textures: &buffers.textures, top_levels: &top_levels, frames_in_flight: FRAMES_IN_FLIGHT };
+        let globals = Globals::new(gpu, &info)?;
+        let constants = [effects.specialization(), settings.parameters.constants()].concat();
+        let mut frame = FrameBuilder::new(gpu, &globals, choice.entry.stem, constants, settings.extent);
+        let gbuffer = settings.outputs.iter().any(|name| gbuffer::OUTPUTS.contains(&name.as_str()));
+        let picture = (technique.passes)(&mut frame, PassOptions { spp: settings.spp, gbuffer })?;
+        let graph = frame.build();
+        check_outputs(&settings, &graph)?;
+        build_ms.pipelines = clock.lap();
+        memory.images = gpu.allocated_bytes() - before;
+        memory.triangles = scene.instances.iter().map(|instance| scene.meshes[instance.mesh as usize].triangles.len() as u64).sum();
+
+        Ok(Self {
+            ring: FrameRing::new(gpu, FRAMES_IN_FLIGHT)?,
+            timers: (0..FRAMES_IN_FLIGHT).map(|_| Timer::new(gpu, graph.marks())).collect::<Result<_, _>>()?,
+            recorder: Recorder::new(graph.pass_names().collect()),
+            parameters: settings.parameters.fields(),
+            trace: choice.entry.name,
+            frame: 0,
+            gpu: gpu.clone(),
+            graph,
+            picture,
+            globals,
+            structure,
+            placed,
+            buffers,
+            energy_tables,
+            pose,
+            scene,
+            settings,
+            build_ms,
+            memory,
+        })
+    }
+
+    /// Records and submits the next frame; waits only for the frame before the last.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub fn render_frame(&mut self) -> Result<(), RenderError> {
+        let slot = self.ring.acquire()?;
+        self.collect(slot);
+        let start = Instant::now();
+        if self.frame > 0 && self.moves() {
+            self.advance_pose()?;
+        }
+        self.placed.write(slot, &self.scene, &self.pose);
+        self.globals.write(slot, &self.frame_data(slot), &self.parameters);
+        let (structure, instances, graph, set) = (&mut self.structure, self.pose.instances(), &self.graph, self.globals.set(slot));
+        let timer = &mut self.timers[slot];
+        self.ring.submit(slot, |commands| {
+            structure.update(commands, slot, instances);
+            graph.record(commands, set, timer);
+        })?;
+        self.recorder.add_cpu(milliseconds(start));
+        self.frame += 1;
+        Ok(())
+    }
+
+    /// Waits for all frames.
+    pub fn finish(&mut self) -> Result<(), RenderError> {
+        self.ring.wait()?;
+        for slot in self.ring.oldest_first() {
+            self.collect(slot);
+        }
+        Ok(())
+    }
+
+    /// Frames rendered.
+    pub fn frame(&self) -> u32 {
+        self.frame
+    }
+
+    /// The technique's picture after the last frame; waits for it.
+    pub fn picture(&self) -> Result<display::Image, RenderError> {
+        self.read_image(self.graph.image_of(self.picture))
+    }
+
+    /// What a pass put out last, by the name of its image; `None` for an unknown name. Integers come as their values.
+    pub fn output(&self, name: &str) -> Result<Option<display::Image>, RenderError> {
+        self.graph.image(name).map(|image| self.read_image(image)).transpose()
+    }
+
+    /// Standard error of the picture's mean over its mean, where the technique keeps a variance.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub fn relative_error(&self) -> Result<Option<f64>, RenderError> {
+        let Some(variance) = self.output("variance")?.filter(|_| self.frame > 1) else { return Ok(None) };
+        let sum = |image: &display::Image| image.pixels.iter().flatten().map(|&channel| f64::from(channel)).sum::<f64>();
+        let mean = sum(&self.picture()?);
+        Ok((mean > 0.0).then(|| sum(&variance).max(0.0).sqrt() / mean))
+    }
+
+    /// What the frames so far cost.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub fn timings(&mut self) -> Result<Timings, RenderError> {
+        self.finish()?;
+        let mut timings = self.recorder.report(self.gpu.capabilities(), self.trace);
+        timings.build_ms = self.build_ms;
+        timings.rays = self.count_rays(timings.frame_ms_median)?;
+        timings.memory_bytes = MemoryUse { total: self.gpu.allocated_bytes(), ..self.memory }.per_triangle();
+        Ok(timings)
+    }
+
+    /// Something is at another place in the next frame.
+    fn moves(&self) -> bool {
+        // After the animation's first frame the last frame's transforms still have to follow.
+        !self.scene.animation.is_empty()
+    }
+
+    fn advance_pose(&mut self) -> Result<(), RenderError> {
+        let time = f64::from(self.frame) / f64::from(self.settings.fps);
+        let (view, scene) = (&self.settings.view, &self.scene);
+        Ok(self.pose.advance(scene, time, |world| view.at(scene, world))?)
+    }
+
+    fn frame_data(&self, slot: usize) -> FrameData {
+        let [camera, previous_camera] = self.pose.cameras(self.settings.extent);
+        let mut data = FrameData {
+            meshes: self.buffers.mesh_buffer.address(),
+            materials: self.buffers.material_buffer.address(),
+            accel: self.structure.root(slot),
+            energy_tables: self.energy_tables.as_ref().map_or(0, Buffer::address),
+            frame: self.frame,
+            camera,
+            previous_camera,
+            extent: self.settings.extent,
+            seed: self.settings.seed,
+            first_sample: self.frame.wrapping_mul(self.settings.spp),
+            scene_radius: self.pose.radius() as f32,
+            ..Default::default()
+        };
+        self.placed.describe(slot, &mut data);
+        data
+    }
+
+    fn collect(&mut self, slot: usize) {
+        self.recorder.add_gpu(self.timers[slot].take());
+    }
+
+    fn read_image(&self, image: &Image) -> Result<display::Image, RenderError> {
+        let [width, height] = image.info().extent;
+        let pixels = match image.info().format {
+            vk::Format::R32_UINT => self.gpu.download_image::<u32>(image)?.into_iter().map(|v| [v as f32; 3]).collect(),
+            vk::Format::R32G32B32A32_UINT => {
+                let texels: Vec<[u32; 4]> = self.gpu.download_image(image)?;
+                texels.into_iter().map(|[x, y, z, _]| [x as f32, y as f32, z as f32]).collect()
+            }
+            _ => self.gpu.download_image::<[f32; 4]>(image)?.into_iter().map(|[r, g, b, _]| [r, g, b]).collect(),
+        };
+        Ok(display::Image::new(width, height, pixels))
+    }
+
+    /// Of the last frame.
+    fn count_rays(&self, frame_ms: f64) -> Result<RayCounts, RenderError> {
+        let Some(image) = self.graph.image("ray_count") else { return Ok(RayCounts::default()) };
+        let counts: Vec<u32> = self.gpu.download_image(image)?;
+        let sum = |part: fn(u32) -> u32| counts.iter().map(|&count| u64::from(part(count))).sum::<u64>();
+        let (scattered, shadow) = (sum(|count| count & 0xffff), sum(|count| count >> 16));
+        let rays = (scattered + shadow) as f64;
+        Ok(RayCounts { scattered, shadow, per_pixel: rays / counts.len() as f64, mrays_per_second: rays / frame_ms * 1e-3 })
+    }
+}
+
+fn check_outputs(settings: &Settings, graph: &FrameGraph) -> Result<(), RenderError> {
+    let Some(name) = settings.outputs.iter().find(|name| graph.image(name).is_none()) else { return Ok(()) };
+    let mut known: Vec<&str> = graph.images().map(|(name, _)| name).chain(gbuffer::OUTPUTS).collect();
+    known.sort_unstable();
+    known.dedup();
+    Err(RenderError::UnknownOutput { technique: settings.technique.name, name: name.clone(), known: known.join(", ") })
+}
+
+fn milliseconds(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}
+
+/// Milliseconds between laps.
+struct Clock(Instant);
+
+impl Clock {
+    fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    fn lap(&mut self) -> f64 {
+        let lap = milliseconds(self.0);
+        self.0 = Instant::now();
+        lap
+    }
+}

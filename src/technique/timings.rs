@@ -1,0 +1,158 @@
+//! What the frames cost: medians over the frames after the first, which compiles and warms up.
+
+use crate::gpu::Capabilities;
+use crate::metrics::statistics::quantile;
+use serde::Serialize;
+
+/// Gathers figures frame by frame.
+#[derive(Debug, Default)]
+pub struct Recorder {
+    names: Vec<&'static str>,
+    /// Milliseconds of each pass, one vector per pass.
+    passes: Vec<Vec<f64>>,
+    frames: Vec<f64>,
+    cpu: Vec<f64>,
+}
+
+/// `--timings`. Times are milliseconds.
+#[derive(Debug, Clone, Serialize)]
+pub struct Timings {
+    pub version: u32,
+    pub device: String,
+    pub driver: String,
+    /// Acceleration structure.
+    pub trace: String,
+    /// Frames that the medians are taken over.
+    pub frames: usize,
+    pub frame_ms_median: f64,
+    pub passes: Vec<PassTime>,
+    /// Recording and submitting one frame, without waiting.
+    pub cpu_ms_median: f64,
+    /// GPU time of the first frame, where drivers may compile.
+    pub first_frame_ms: f64,
+    pub build_ms: BuildTimes,
+    pub rays: RayCounts,
+    pub memory_bytes: MemoryUse,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PassTime {
+    pub name: &'static str,
+    pub median_ms: f64,
+    pub p95_ms: f64,
+}
+
+/// What came before the first frame.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub struct BuildTimes {
+    /// Spatial order: the trees of all meshes.
+    pub order: f64,
+    pub upload: f64,
+    pub structure: f64,
+    pub pipelines: f64,
+}
+
+/// Of one frame.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub struct RayCounts {
+    /// Primary rays among them.
+    pub scattered: u64,
+    pub shadow: u64,
+    pub per_pixel: f64,
+    pub mrays_per_second: f64,
+}
+
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub struct MemoryUse {
+    /// Vertices, triangles, materials, instances, lights.
+    pub scene: u64,
+    pub textures: u64,
+    pub structure: u64,
+    pub images: u64,
+    pub total: u64,
+    pub triangles: u64,
+    /// Scene and structure, without textures.
+    pub per_triangle: f64,
+}
+
+impl MemoryUse {
+    pub(super) fn per_triangle(self) -> Self {
+        Self { per_triangle: (self.scene + self.structure) as f64 / self.triangles.max(1) as f64, ..self }
+    }
+}
+
+impl Recorder {
+    pub fn new(names: Vec<&'static str>) -> Self {
+        Self { passes: vec![Vec::new(); names.len()], names, ..Default::default() }
+    }
+
+    /// GPU times of one frame, one per pass, or none where the device has no timestamps.
+    pub fn add_gpu(&mut self, milliseconds: impl Iterator<Item = f64>) {
+        let mut total = None;
+        for (pass, ms) in self.passes.iter_mut().zip(milliseconds) {
+            pass.push(ms);
+            *total.get_or_insert(0.0) += ms;
+        }
+        self.frames.extend(total);
+    }
+
+    pub fn add_cpu(&mut self, milliseconds: f64) {
+        self.cpu.push(milliseconds);
+    }
+
+    /// The report; rays and memory are filled in by the renderer.
+    pub fn report(&self, capabilities: &Capabilities, trace: &str) -> Timings {
+        let pass = |(name, times): (&&'static str, &Vec<f64>)| PassTime {
+            name,
+            median_ms: quantile(warm(times), 0.5),
+            p95_ms: quantile(warm(times), 0.95),
+        };
+        Timings {
+            version: 1,
+            device: capabilities.name.clone(),
+            driver: capabilities.driver.clone(),
+            trace: trace.to_owned(),
+            frames: warm(&self.frames).len(),
+            frame_ms_median: quantile(warm(&self.frames), 0.5),
+            passes: self.names.iter().zip(&self.passes).map(pass).collect(),
+            cpu_ms_median: quantile(warm(&self.cpu), 0.5),
+            first_frame_ms: self.frames.first().copied().unwrap_or(f64::NAN),
+            build_ms: BuildTimes::default(),
+            rays: RayCounts::default(),
+            memory_bytes: MemoryUse::default(),
+        }
+    }
+}
+
+/// A table of milliseconds per pass, for people.
+impl std::fmt::Display for Timings {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        writeln!(f, "{} ({}), rays traced by {}, {} frames", self.device, self.driver, self.trace, self.frames)?;
+        writeln!(f, "  {:<20} {:>10} {:>10}", "pass", "median ms", "p95 ms")?;
+        for pass in &self.passes {
+            writeln!(f, "  {:<20} {:>10.2} {:>10.2}", pass.name, pass.median_ms, pass.p95_ms)?;
+        }
+        writeln!(f, "  {:<20} {:>10.2}", "frame", self.frame_ms_median)?;
+        writeln!(f, "  {:<20} {:>10.2}", "first frame", self.first_frame_ms)?;
+        writeln!(f, "  {:<20} {:>10.2}", "host", self.cpu_ms_median)?;
+        let RayCounts { per_pixel, mrays_per_second, .. } = self.rays;
+        write!(f, "  {per_pixel:.1} rays per pixel, {mrays_per_second:.2} Mray/s, {:.1} MB", self.memory_bytes.total as f64 * 1e-6)
+    }
+}
+
+/// Without the first frame, where there are more.
+fn warm(times: &[f64]) -> Vec<f64> {
+    times[usize::from(times.len() > 1)..].to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_frame_does_not_count() {
+        assert_eq!(warm(&[100.0, 1.0, 2.0]), [1.0, 2.0]);
+        assert_eq!(warm(&[100.0]), [100.0]);
+        assert!(warm(&[]).is_empty());
+    }
+}

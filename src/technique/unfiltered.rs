@@ -1,0 +1,22 @@
+//! `unfiltered`: one path per pixel, its terms apart and recombined: what every filter starts from, without one.
+
+use super::{PassOptions, Technique};
+use crate::display::composite;
+use crate::frame::{FrameBuilder, ImageHandle};
+use crate::gpu::GpuError;
+use crate::paths::{gbuffer, megakernel};
+
+pub(super) const TECHNIQUE: Technique = Technique {
+    name: "unfiltered",
+    help: "one path per pixel, its radiance terms kept apart and recombined; each frame stands alone",
+    accumulates: false,
+    max_spp: 1,
+    defaults: &[],
+    passes,
+};
+
+fn passes(frame: &mut FrameBuilder, _: PassOptions) -> Result<ImageHandle, GpuError> {
+    gbuffer::add(frame)?;
+    let terms = megakernel::add_with_terms(frame)?;
+    composite::add(frame, &terms)
+}

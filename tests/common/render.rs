@@ -1,0 +1,55 @@
+//! Whole pictures for tests: small, few samples, fixed seeds.
+
+use pathspace::display::Image;
+use pathspace::gpu::Gpu;
+use pathspace::scene::{Scene, builtin};
+use pathspace::technique::{self, Parameters, Renderer, Settings, ViewChoice};
+
+/// A picture and the variance of each of its values.
+pub struct Rendered {
+    pub mean: Image,
+    pub variance: Image,
+}
+
+/// The reference technique at one sample per pixel and frame; change what a test is about.
+pub fn settings(width: u32, height: u32) -> Settings {
+    let mut settings = Settings {
+        extent: [width, height],
+        spp: 1,
+        technique: technique::find("reference").expect("it is registered"),
+        trace: "auto".to_owned(),
+        parameters: Parameters::default(),
+        all_effects: false,
+        seed: 1,
+        fps: 30.0,
+        view: ViewChoice::Scene(None),
+        outputs: Vec::new(),
+    };
+    set(&mut settings, &[("textures.level", "zero")]);
+    settings
+}
+
+pub fn set(settings: &mut Settings, values: &[(&str, &str)]) {
+    for (key, value) in values {
+        settings.parameters.set(key, value).unwrap();
+    }
+}
+
+pub fn builtin(name: &str) -> Scene {
+    builtin::find(name).unwrap().expect("a built-in scene").load().unwrap()
+}
+
+pub fn render(gpu: &Gpu, scene: &Scene, settings: &Settings, frames: u32) -> Rendered {
+    let mut renderer = Renderer::new(gpu, scene.clone(), settings.clone()).unwrap();
+    for _ in 0..frames {
+        renderer.render_frame().unwrap();
+    }
+    renderer.finish().unwrap();
+    Rendered { mean: renderer.picture().unwrap(), variance: renderer.output("variance").unwrap().expect("the reference keeps it") }
+}
+
+/// Mean over all pixels and channels.
+pub fn mean(image: &Image) -> f64 {
+    let values = image.pixels.iter().flatten().map(|&v| f64::from(v));
+    values.sum::<f64>() / (3 * image.pixels.len()) as f64
+}

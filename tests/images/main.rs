@@ -1,0 +1,9 @@
+//! Whole pictures: exact answers, estimators and structures that must agree, and independent renderers' images.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod agreement;
+mod exact;
+mod terms;
+mod worlds;
