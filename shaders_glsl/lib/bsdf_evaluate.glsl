@@ -127,7 +127,7 @@ void add_transmission(Surface s, vec3 wo, vec3 wi, float cos_o, float cos_i, Tec
     if (COMPENSATE_ENERGY) {
         float f0 = max_component(s.dielectric_f0);
         GgxEnergy e = ggx_energy(s.alpha, cos_o, cos_i);
-        float lost = s.thin ? (1.0 - multiple_fresnel(vec3(f0), s.dielectric_f90, e.average.x).x) * lost_lobe(e)
+        float lost = s.thin ? max(1.0 - multiple_fresnel(vec3(f0), s.dielectric_f90, e.average.x).x, 0.0) * lost_lobe(e)
             : lost_glass_lobes(s.alpha, s.eta, f0, s.dielectric_f90, cos_o, cos_i).y;
         transmitted += lost * cos_i;
         value.pdf += p.far_diffuse * cosine_hemisphere_pdf(cos_i);

@@ -124,7 +124,7 @@ vec2 glass_loss(float cosine, float alpha, float eta, vec3 weights) {
     axis_place(sqrt(alpha), GLASS_ROUGHNESSES, row, y);
     axis_place(glass_ior_axis(eta), GLASS_IORS, layer, z);
     vec2 loss = vec2(0.0);
-    for (uint corner = 0u; corner < 4u; corner++) {
+    [[dont_unroll]] for (uint corner = 0u; corner < 4u; corner++) {
         uint r = row + (corner & 1u);
         uint l = layer + (corner >> 1);
         float weight = ((corner & 1u) != 0u ? y : 1.0 - y) * ((corner >> 1) != 0u ? z : 1.0 - z);
@@ -149,9 +149,14 @@ vec2 lost_glass_lobes(float alpha, float eta, float f0, float f90, float cos_o, 
         return vec2(0.0);
     }
     vec3 weights = vec3(1.0, f0, f90);
-    vec2 o = glass_loss(cos_o, alpha, eta, weights);
-    vec2 i_near = glass_loss(cos_i, alpha, eta, weights);
-    vec2 i_far = glass_loss(cos_i, alpha, 1.0 / eta, weights);
+    vec2 o = vec2(0.0), i_near = vec2(0.0), i_far = vec2(0.0);
+    // A loop, so that drivers that inline everything compile the look-up once.
+    [[dont_unroll]] for (uint k = 0u; k < 3u; k++) {
+        vec2 loss = glass_loss(k == 0u ? cos_o : cos_i, alpha, k == 2u ? 1.0 / eta : eta, weights);
+        o = k == 0u ? loss : o;
+        i_near = k == 1u ? loss : i_near;
+        i_far = loss;
+    }
     float transmitted = average_transmittance(eta) * i_far.y / max(max(o.y, i_far.y), 1e-6);
     vec2 shape = vec2(i_near.x, i_far.x) / max(vec2(i_near.y, i_far.y), 1e-6);
     return INV_PI * o.x * shape * vec2(1.0 - transmitted, transmitted);

@@ -5,6 +5,9 @@ mod common;
 #[path = "../common/glb.rs"]
 mod glb;
 
+#[path = "../common/surface.rs"]
+mod surface;
+
 mod builtin;
 mod effects;
 mod gpu_kernel;
@@ -14,3 +17,4 @@ mod scene_materials;
 mod scene_meshes;
 mod scene_nodes;
 mod scene_shared;
+mod shader_lib_bsdf;
