@@ -6,4 +6,5 @@ mod common;
 #[path = "../common/surface.rs"]
 mod surface;
 
+mod bsdf_chi_square;
 mod furnace;
