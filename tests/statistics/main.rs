@@ -8,3 +8,4 @@ mod surface;
 
 mod bsdf_chi_square;
 mod furnace;
+mod lights;
