@@ -18,4 +18,5 @@ mod scene_meshes;
 mod scene_nodes;
 mod scene_shared;
 mod shader_lib_bsdf;
+mod shader_lib_functions;
 mod shader_lib_sampler;
