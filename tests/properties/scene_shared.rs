@@ -1,7 +1,8 @@
 //! Scenes that nobody here wrote load, and hold what their table says.
 
-use std::{fs, path::Path, time::Instant};
+use std::{collections::HashMap, fs, path::Path, time::Instant};
 
+use glam::Vec3;
 use pathspace::scene::{self, Scene};
 
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/scenes");
@@ -38,7 +39,36 @@ fn every_scene_of_the_table_loads_with_its_triangles() {
         let start = Instant::now();
         let scene = scene::gltf::load(Path::new(&path)).unwrap_or_else(|error| panic!("{error}"));
         let (placed, skipped) = (placed_triangles(&scene), degenerate(&scene) as usize);
-        println!("{folder}: {placed} triangles, {} textures, {:.0?}; {:?}", scene.textures.len(), start.elapsed(), scene.warnings);
+        println!("{folder}: {placed} triangles, {} textures, {:.2?}; {:?}", scene.textures.len(), start.elapsed(), scene.warnings);
         assert!(placed <= triangles && (placed == triangles || skipped > 0), "{folder}: {placed} of {triangles} triangles");
     }
+}
+
+/// (position, normal, texture coordinates) of each vertex, with its tangent.
+fn tangents(scene: &Scene) -> HashMap<[u32; 8], Vec<[f32; 4]>> {
+    let mut tangents: HashMap<_, Vec<_>> = HashMap::new();
+    for mesh in &scene.meshes {
+        for (i, tangent) in mesh.tangents.iter().enumerate() {
+            let ([x, y, z], [nx, ny, nz], [u, v]) = (mesh.positions[i], mesh.normals[i], mesh.uv0[i]);
+            tangents.entry([x, y, z, nx, ny, nz, u, v].map(f32::to_bits)).or_default().push(*tangent);
+        }
+    }
+    tangents
+}
+
+/// The file's own tangents were baked by another program, also by mikktspace.
+#[test]
+fn generated_tangents_agree_with_those_that_the_flight_helmet_brings() {
+    let folder = Path::new(SCENES).join("FlightHelmet");
+    let Ok(text) = fs::read_to_string(folder.join("FlightHelmet.gltf")) else {
+        println!("skipped: {} is missing", folder.display());
+        return;
+    };
+    let load = |text: &str| tangents(&scene::gltf::load_slice(text.as_bytes(), Some(&folder), "FlightHelmet").unwrap());
+    let (brought, generated) = (load(&text), load(&text.replace("\"TANGENT\"", "\"_UNUSED\"")));
+    let same = |a: &[f32; 4], b: &[f32; 4]| a[3] == b[3] && Vec3::from_slice(a).dot(Vec3::from_slice(b)) > 0.95;
+    let agrees = |(vertex, tangents): (&[u32; 8], &Vec<[f32; 4]>)| tangents.iter().all(|a| generated[vertex].iter().any(|b| same(a, b)));
+    let share = brought.iter().filter(|entry| agrees(*entry)).count() as f64 / brought.len() as f64;
+    println!("{:.2} % of {} vertices agree", 100.0 * share, brought.len());
+    assert!(share > 0.98);
 }
