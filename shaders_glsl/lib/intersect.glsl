@@ -16,7 +16,10 @@ vec3 finite_reciprocal(vec3 direction) {
     return 1.0 / mix(direction, least, lessThan(abs(direction), vec3(1e-30)));
 }
 
-/// Where the ray enters the box, at least t_min; infinity where it misses it within (t_min, t_max).
+/// What `intersect_box` returns for a miss: no box is entered there or behind.
+const float MISSED = 3.4028235e38;
+
+/// Where the ray enters the box, at least t_min; MISSED where it does not in (t_min, t_max).
 float intersect_box(vec3 origin, vec3 reciprocal, float t_min, float t_max, vec3 box_min, vec3 box_max) {
     vec3 t0 = (box_min - origin) * reciprocal;
     vec3 t1 = (box_max - origin) * reciprocal;
@@ -25,7 +28,7 @@ float intersect_box(vec3 origin, vec3 reciprocal, float t_min, float t_max, vec3
     float near = max(max(lower.x, lower.y), max(lower.z, t_min));
     float far = min(min(upper.x, upper.y), min(upper.z, t_max));
     // 1 + 2 gamma(3): three roundings on each side.
-    return near <= far * 1.0000004 ? near : uintBitsToFloat(0x7f800000u);
+    return near <= far * 1.0000004 ? near : MISSED;
 }
 
 /// A ray's own half of the watertight test: its direction's largest component becomes z, and the shear makes it the z axis.

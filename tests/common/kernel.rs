@@ -14,6 +14,8 @@ pub struct KernelOptions {
     pub constants: Vec<(u32, u32)>,
     pub frame: FrameData,
     pub parameters: Parameters,
+    /// For kernels that trace by ray query.
+    pub top_levels: Vec<vk::AccelerationStructureKHR>,
 }
 
 const HEADER: &str = "
@@ -46,7 +48,7 @@ pub fn run_kernel_with<I: Pod, O: Pod>(gpu: &Gpu, source: &str, inputs: &[I], op
     let text = format!("{}{HEADER}{}void kernel({body}{MAIN}", &head[..structs_end], &head[structs_end..]);
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl");
     let spirv = shader_compiler::compile(&root, "test kernel", &text, &options.defines).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let mut globals = Globals::new(gpu, &GlobalsInfo { textures: &[], top_levels: &[], frames_in_flight: 1 }).unwrap();
+    let mut globals = Globals::new(gpu, &GlobalsInfo { textures: &[], top_levels: &options.top_levels, frames_in_flight: 1 }).unwrap();
     globals.write(0, &options.frame, &options.parameters);
     let pipeline = ComputePipeline::new(gpu, "test kernel", &spirv, globals.layout(), &options.constants).unwrap();
     let own = DescriptorSet::new(pipeline.own_layout()).unwrap();

@@ -4,6 +4,7 @@
 #![allow(dead_code, unused_imports)]
 
 pub mod kernel;
+pub mod rays;
 pub mod render;
 
 pub use kernel::{KernelOptions, run_kernel, run_kernel_with};

@@ -8,6 +8,7 @@ mod glb;
 #[path = "../common/surface.rs"]
 mod surface;
 
+mod accel_parity;
 mod builtin;
 mod effects;
 mod gpu_kernel;

@@ -1,4 +1,10 @@
-// Two-level binary tree in buffers (src/accel/bvh.rs builds it).
+// A binary tree over instances, whose leaves are binary trees over triangles (src/accel/bvh.rs builds both), in one loop.
+//
+// Nodes hold their children's bounds; the nearer child is visited first, the other one goes onto a stack. A ray that enters an
+// instance goes on in mesh space, with distances unchanged since its direction is not normalized again, until the stack is back at
+// the height that it had there.
+// The stack cannot overflow: each inner node on the way pushes one child at most, and the builder bounds the nodes on any way by
+// BVH_TOP_DEPTH and BVH_MESH_DEPTH (src/accel/tree.rs).
 #ifndef ACCEL_STRUCTURES_BVH_GLSL
 #define ACCEL_STRUCTURES_BVH_GLSL
 
@@ -10,75 +16,101 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BvhNodeBuffer { BvhNode at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BvhInstanceBuffer { BvhInstance at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BvhRootBuffer { BvhRoot root; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer BvhRootBuffer { BvhRoot root; };
+
+/// Height of the stack at which an instance is left, for a ray that is in none.
+const uint IN_TOP_LEVEL = 0xffffffffu;
+
+/// The ray in the space that it goes through now.
+struct LocalRay {
+    vec3 origin;
+    vec3 direction;
+    vec3 reciprocal;
+    /// In mesh space only.
+    TriangleRay triangle;
+};
+
+LocalRay world_ray(Ray ray) {
+    return LocalRay(ray.origin, ray.direction, finite_reciprocal(ray.direction), TriangleRay(vec3(0.0), vec3(0.0), 0u));
+}
+
+LocalRay mesh_ray(Ray ray, vec4 world_to_object[3]) {
+    vec4 origin = vec4(ray.origin, 1.0);
+    LocalRay local;
+    local.origin = vec3(dot(world_to_object[0], origin), dot(world_to_object[1], origin), dot(world_to_object[2], origin));
+    local.direction = vec3(
+        dot(world_to_object[0].xyz, ray.direction), dot(world_to_object[1].xyz, ray.direction), dot(world_to_object[2].xyz, ray.direction));
+    local.reciprocal = finite_reciprocal(local.direction);
+    local.triangle = triangle_ray(local.origin, local.direction);
+    return local;
+}
+
+bool intersect_triangle(LocalRay ray, vec3 p0, vec3 p1, vec3 p2, float t_min, float t_max, out float t, out vec2 barycentrics) {
+    if (INTERSECTION == 0) {
+        return intersect_watertight(ray.triangle, p0, p1, p2, t_min, t_max, t, barycentrics);
+    }
+    return intersect_moeller_trumbore(ray.origin, ray.direction, p0, p1, p2, t_min, t_max, t, barycentrics);
+}
 
 bool accel_trace(Ray ray, bool any_hit, uint alpha_seed, out Hit hit) {
     BvhRoot root = BvhRootBuffer(frame.accel).root;
     BvhNodeBuffer nodes = BvhNodeBuffer(root.nodes);
     BvhInstanceBuffer instances = BvhInstanceBuffer(root.instances);
-    Vec3Buffer triangles = Vec3Buffer(root.triangles);
+    Vec3Buffer corners = Vec3Buffer(root.triangles);
 
     uint stack[BVH_TOP_DEPTH + BVH_MESH_DEPTH];
-    uint top = 0;
-    // Height of the stack at which the instance is left; 0xffffffff in the top level.
-    uint base = 0xffffffffu;
-    uint instance = 0, first_triangle = 0;
-    vec3 origin = ray.origin;
-    vec3 reciprocal = finite_reciprocal(ray.direction);
-    TriangleRay triangle_space = TriangleRay(vec3(0), vec3(0), 0);
-    float t_max = ray.t_max;
-    bool found = false;
+    uint height = 0;
+    uint base = IN_TOP_LEVEL;
+    LocalRay local = world_ray(ray);
+    uint instance = 0, first_triangle = 0, flags = 0;
     uint current = root.root;
-    while (true) {
+    bool found = false;
+    hit.t = ray.t_max;
+
+    while (current != BVH_EMPTY) {
         if ((current & BVH_LEAF) == 0) {
             BvhNode node = nodes.at[current];
-            float t0 = intersect_box(origin, reciprocal, ray.t_min, t_max, node.min0, node.max0);
-            float t1 = intersect_box(origin, reciprocal, ray.t_min, t_max, node.min1, node.max1);
-            bool first_is_near = t0 <= t1;
-            uint near = first_is_near ? node.child0 : node.child1;
-            uint far = first_is_near ? node.child1 : node.child0;
-            if (!isinf(max(t0, t1))) {
-                stack[top++] = far;
+            float t0 = intersect_box(local.origin, local.reciprocal, ray.t_min, hit.t, node.min0, node.max0);
+            float t1 = intersect_box(local.origin, local.reciprocal, ray.t_min, hit.t, node.min1, node.max1);
+            bool ordered = t0 <= t1;
+            if (max(t0, t1) < MISSED) {
+                stack[height++] = ordered ? node.child1 : node.child0;
             }
-            if (!isinf(min(t0, t1))) {
-                current = near;
+            if (min(t0, t1) < MISSED) {
+                current = ordered ? node.child0 : node.child1;
                 continue;
             }
-        } else if (base == 0xffffffffu) {
-            if (current != BVH_EMPTY) {
-                instance = current & ~BVH_LEAF;
-                BvhInstance placed = instances.at[instance];
-                mat4x3 m = transpose(mat3x4(placed.world_to_object[0], placed.world_to_object[1], placed.world_to_object[2]));
-                origin = m * vec4(ray.origin, 1.0);
-                vec3 direction = m * vec4(ray.direction, 0.0);
-                reciprocal = finite_reciprocal(direction);
-                triangle_space = triangle_ray(origin, direction);
-                first_triangle = placed.first_triangle;
-                base = top;
-                current = placed.root;
-                continue;
-            }
+        } else if (base == IN_TOP_LEVEL) {
+            instance = current & ~BVH_LEAF;
+            local = mesh_ray(ray, instances.at[instance].world_to_object);
+            first_triangle = instances.at[instance].first_triangle;
+            flags = instances.at[instance].flags;
+            current = instances.at[instance].root;
+            base = height;
+            continue;
         } else {
             uint first = current & BVH_FIRST_MASK;
-            uint count = ((current >> BVH_COUNT_SHIFT) & 3) + 1;
-            for (uint i = first; i < first + count; i++) {
-                float t; vec2 uv;
-                if (intersect_watertight(triangle_space, triangles.at[3*i], triangles.at[3*i+1], triangles.at[3*i+2], ray.t_min, t_max, t, uv)) {
-                    t_max = t;
-                    hit = Hit(t, instance, i - first_triangle, uv);
+            uint end = first + ((current >> BVH_COUNT_SHIFT) & 3u);
+            for (uint i = first; i <= end; i++) {
+                float t;
+                vec2 barycentrics;
+                bool hits = intersect_triangle(local, corners.at[3 * i], corners.at[3 * i + 1], corners.at[3 * i + 2], ray.t_min, hit.t, t, barycentrics);
+                if (hits && ((flags & INSTANCE_ALPHA) == 0 || alpha_passes(instance, i - first_triangle, barycentrics, alpha_seed))) {
+                    hit = Hit(t, instance, i - first_triangle, barycentrics);
                     found = true;
                 }
             }
-            if (found && any_hit) break;
+            if (found && any_hit) {
+                break;
+            }
         }
-        if (top == base) {
-            base = 0xffffffffu;
-            origin = ray.origin;
-            reciprocal = finite_reciprocal(ray.direction);
+        if (height == base) {
+            base = IN_TOP_LEVEL;
+            local = world_ray(ray);
         }
-        if (top == 0) break;
-        current = stack[--top];
+        current = height == 0 ? BVH_EMPTY : stack[--height];
     }
     return found;
 }
+
 #endif
