@@ -1,9 +1,14 @@
 //! Scenes that nobody here wrote load, and hold what their table says.
 
-use std::{collections::HashMap, fs, path::Path, time::Instant};
+use std::{
+    collections::HashMap,
+    fs,
+    path::{Path, PathBuf},
+    time::Instant,
+};
 
 use glam::Vec3;
-use pathspace::scene::{self, Scene};
+use pathspace::scene::{self, Mesh, Scene};
 
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/scenes");
 
@@ -42,6 +47,43 @@ fn every_scene_of_the_table_loads_with_its_triangles() {
         println!("{folder}: {placed} triangles, {} textures, {:.2?}; {:?}", scene.textures.len(), start.elapsed(), scene.warnings);
         assert!(placed <= triangles && (placed == triangles || skipped > 0), "{folder}: {placed} of {triangles} triangles");
     }
+}
+
+/// Files of one folder that the loader reads.
+fn files(folder: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(format!("{SCENES}/{folder}")).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut files: Vec<_> =
+        entries.filter(|path| path.extension().is_some_and(|extension| extension == "gltf" || extension == "glb")).collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn every_variant_of_a_scene_loads() {
+    for path in ["cornell", "huge_coords_cornell", "light_units", "gltf-rs_box_sparse"].into_iter().flat_map(files) {
+        let scene = scene::gltf::load(&path).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(scene.warnings.iter().filter(|warning| !warning.message.contains("morph")).count(), 0, "{:?}", scene.warnings);
+    }
+}
+
+/// The generator draws one square as points, lines, strips, fans and lists, with and without indices.
+#[test]
+fn every_primitive_mode_with_triangles_covers_the_same_square() {
+    for path in files("primitive_modes_khronos_generator/Mesh_PrimitiveMode") {
+        match scene::gltf::load(&path) {
+            Ok(scene) => assert_eq!(area_along_z(&scene.meshes[0]), 1.0, "{}", path.display()),
+            Err(error) => assert!(error.to_string().contains("points or lines skipped"), "{error}"),
+        }
+    }
+}
+
+/// Of the triangles that face +z, less those that face -z.
+fn area_along_z(mesh: &Mesh) -> f32 {
+    let area = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|vertex| Vec3::from(mesh.positions[vertex as usize]));
+        (b - a).cross(c - a).z / 2.0
+    };
+    mesh.triangles.iter().map(area).sum()
 }
 
 /// (position, normal, texture coordinates) of each vertex, with its tangent.
