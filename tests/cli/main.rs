@@ -3,6 +3,7 @@
 mod diff;
 mod inspect;
 mod readme;
+mod render;
 mod render_arguments;
 mod setup;
 
