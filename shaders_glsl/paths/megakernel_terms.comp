@@ -3,7 +3,7 @@
 #define SHARED_JITTER
 #include "paths/path.glsl"
 
-layout(local_size_x = 8, local_size_y = 4) in;
+layout(local_size_x = 32) in;
 
 layout(set = 1, binding = 0, rgba32f) writeonly uniform image2D before;
 layout(set = 1, binding = 1, rgba32f) writeonly uniform image2D attenuation;
@@ -19,13 +19,8 @@ vec4 finite_or_black(vec3 value) {
     return vec4(finite ? value : vec3(0.0), finite ? 1.0 : 0.0);
 }
 
-void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
-        return;
-    }
-    uvec2 counts;
-    Terms terms = trace_paths(uvec2(pixel), frame.first_sample, 1u, counts);
+void write_pixel(uvec2 at, Terms terms, uvec2 counts) {
+    ivec2 pixel = ivec2(at);
     imageStore(before, pixel, finite_or_black(terms.before));
     imageStore(attenuation, pixel, finite_or_black(terms.attenuation));
     imageStore(diffuse_direct, pixel, finite_or_black(terms.diffuse_direct));
@@ -33,4 +28,8 @@ void main() {
     imageStore(specular_direct, pixel, finite_or_black(terms.specular_direct));
     imageStore(specular_indirect, pixel, finite_or_black(terms.specular_indirect));
     imageStore(ray_count, pixel, uvec4(counts.x | counts.y << 16));
+}
+
+void main() {
+    trace_pixels(gl_WorkGroupID.x, gl_LocalInvocationIndex, 1u);
 }

@@ -1,5 +1,6 @@
-// Unidirectional path tracing, whole paths in one kernel: one traversal call site in a loop whose turns alternate between a
-// scattered ray and a shadow ray, so that neighbouring threads stay together.
+// Unidirectional path tracing, whole paths in one kernel. Each turn of the loop traces a ray through the one traversal call site,
+// for some threads a shadow ray, for others a scattered one. A thread has several pixels and starts the next path when
+// one has ended, so that no thread waits for its neighbours' longer paths, and every turn has a ray to trace.
 //
 // Kajiya, "The Rendering Equation", 1986; next event estimation and the power heuristic: Veach, "Robust Monte Carlo Methods for Light
 // Transport Simulation", 1997, sections 9.2.4 and 10.3.4. Terms at the filter vertex: paths/terms.glsl (Meijer, algorithm 1).
@@ -31,6 +32,9 @@ const uint EXTRA_PAIRS = 1u + PAIRS_PER_VERTEX * 66u;
 
 const uint NO_VERTEX = ~0u;
 
+/// Tiles of 8x4 pixels that a workgroup of 32 threads works off.
+layout(constant_id = 201) const uint TILES = 1;
+
 struct Path {
     /// The scattered ray: being traced, or to be traced after this vertex's shadow rays.
     Ray ray;
@@ -53,9 +57,10 @@ struct Path {
     Sampler numbers;
 };
 
-/// Light that waits for its shadow ray.
+/// Light that waits for its shadow ray; none where the ray's t_max is below 0.
 struct Pending {
     Ray ray;
+    uint alpha_seed;
     uint term;
     float diffuse_weight;
     vec3 specular_weight;
@@ -84,8 +89,8 @@ Path path_begin(uvec2 pixel, uint sample_index) {
 }
 
 /// The same holes for everything that one ray of one sample sees, others for the next.
-uint alpha_seed(Path path, uint ray) {
-    return EFFECT_ALPHA_BLEND ? pcg3d(uvec3(path.numbers.scramble, path.numbers.index, path.vertex * 32u + ray)).x : 0u;
+uint alpha_seed(Path path) {
+    return EFFECT_ALPHA_BLEND ? pcg3d(uvec3(path.numbers.scramble, path.numbers.index, path.vertex)).x : 0u;
 }
 
 float power_heuristic(float a, float b) {
@@ -126,10 +131,12 @@ void add_environment(Path path, inout Terms terms) {
     add_emission(path, radiance, environment_pdf(path.ray.direction), terms);
 }
 
-/// Looks for light at a vertex; nothing waits where there is none to be found.
+const Ray NO_RAY = Ray(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), -1.0);
+
+/// Looks for light at a vertex, by one of `rays` shadow rays; nothing waits where there is none to be found.
 Pending sample_direct(Path path, HitPoint point, vec3 wo, vec4 u, float rays) {
     Pending pending;
-    pending.ray = Ray(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), -1.0);
+    pending.ray = NO_RAY;
     LightSample light;
     if (!sample_light(point.origin.position, u, light) || (DIRECT == DIRECT_BSDF && !light.delta)) {
         return pending;
@@ -228,79 +235,106 @@ bool meet_sphere_light(Path path, bool hit_something, float t, inout Terms terms
     return true;
 }
 
-/// Follows one path after another, `samples` of them, and returns the sum of their terms. `counts`: scattered rays and shadow rays.
-Terms trace_paths(uvec2 pixel, uint first_sample, uint samples, out uvec2 counts) {
-    Terms sum = no_terms();
-    Terms terms = no_terms();
-    counts = uvec2(0u);
-    uint done = 0u;
-    Path path = path_begin(pixel, first_sample);
-    Pending pending;
-    Hit hit;
-    vec3 wo;
-    uint shadow_rays = 0u;
-    bool goes_on = false;
-    while (done < samples) {
-        bool shadow = shadow_rays > 0u;
-        Ray ray = path.ray;
-        if (shadow) {
-            ray = pending.ray;
-        }
-        Hit found;
-        bool traced = ray.t_max > ray.t_min;
-        bool hit_something = traced && accel_trace(ray, shadow, alpha_seed(path, shadow_rays), found);
-        counts[shadow ? 1 : 0] += traced ? 1u : 0u;
+/// Pixel of a thread of 32 in the group's tile `turn`; tiles of 8x4 pixels go along the rows of the picture.
+uvec2 pixel_of(uint group, uint thread, uint turn) {
+    uint tiles = (frame.extent.x + 7u) / 8u;
+    uint tile = group * TILES + turn;
+    return uvec2(tile % tiles, tile / tiles) * uvec2(8u, 4u) + uvec2(thread % 8u, thread / 8u);
+}
 
-        bool ended = false;
-        bool shade = false;
-        if (shadow) {
-            if (traced && !hit_something) {
-                add_term(terms, pending.term, pending.diffuse_weight, pending.specular_weight, pending.radiance);
-            }
-            shadow_rays--;
-            shade = shadow_rays > 0u;
-            ended = !shade && !goes_on;
-        } else if (meet_sphere_light(path, hit_something, found.t, terms)) {
-            ended = true;
-        } else if (!hit_something) {
-            add_environment(path, terms);
-            ended = true;
-        } else {
-            hit = found;
-            wo = -path.ray.direction;
-            path.cone = cone_advance(path.cone, hit.t);
-            shade = true;
-        }
-        if (shade) {
-            HitPoint point = hit_point(hit, -wo, path.cone);
-            if (shadow || arrive(path, hit, point, terms)) {
-                path.numbers.dimension = shadow ? EXTRA_PAIRS + 2u * shadow_rays : 1u + PAIRS_PER_VERTEX * path.vertex;
-                float rays = path.vertex == 0u ? float(parameters.first_shadow_rays) : 1.0;
-                vec2 choice = sample_2d(path.numbers);
-                pending = sample_direct(path, point, wo, vec4(choice, sample_2d(path.numbers)), rays);
-                if (!shadow) {
-                    vec2 direction = sample_2d(path.numbers);
-                    goes_on = scatter(path, point, wo, vec4(direction, sample_2d(path.numbers)), terms.attenuation);
-                    shadow_rays = uint(rays);
-                }
-            } else {
-                ended = true;
-            }
-        } else if (shadow && goes_on) {
-            path.vertex++;
-        }
-        if (ended) {
-            sum.before += terms.before;
-#ifdef SEPARATE_TERMS
-            sum = terms;
-#endif
-            terms = no_terms();
-            done++;
-            path = path_begin(pixel, first_sample + done);
-            shadow_rays = 0u;
+/// The thread's pixel in tile `turn` or the first one after it that lies in the picture; false where there is none.
+bool find_pixel(uint group, uint thread, inout uint turn, out uvec2 pixel) {
+    for (; turn < TILES; turn++) {
+        pixel = pixel_of(group, thread, turn);
+        if (all(lessThan(pixel, frame.extent))) {
+            return true;
         }
     }
-    return sum;
+    return false;
+}
+
+/// Takes a pixel's result; `counts`: its scattered rays and shadow rays. Defined by the kernel.
+void write_pixel(uvec2 pixel, Terms terms, uvec2 counts);
+
+/// The paths of all pixels of a thread, `samples` of each, one after the other.
+void trace_pixels(uint group, uint thread, uint samples) {
+    uint turn = 0u;
+    uint sampled = 0u;
+    uvec2 pixel;
+    bool paths_left = find_pixel(group, thread, turn, pixel);
+    Path path = path_begin(pixel, frame.first_sample);
+    Terms terms = no_terms();
+    Pending pending;
+    pending.ray = NO_RAY;
+    // Shadow rays that the path's last vertex has yet to send.
+    uint shadow_rays = 0u;
+    Hit hit;
+    vec3 wo;
+    uvec2 counts = uvec2(0u);
+    bool ended = false;
+    while (paths_left) {
+        bool lights = pending.ray.t_max > 0.0;
+        bool scatters = !lights && shadow_rays == 0u;
+        Ray ray = pending.ray;
+        uint seed = pending.alpha_seed;
+        if (scatters) {
+            ray = path.ray;
+            seed = alpha_seed(path);
+        }
+        Hit found;
+        bool blocked = accel_trace(ray, lights, seed, found);
+        counts += uvec2(scatters, lights);
+
+        bool shade = shadow_rays > 0u;
+        if (scatters) {
+            ended = meet_sphere_light(path, blocked, found.t, terms);
+            if (!ended && !blocked) {
+                add_environment(path, terms);
+                ended = true;
+            }
+            if (!ended) {
+                hit = found;
+                wo = -path.ray.direction;
+                path.cone = cone_advance(path.cone, hit.t);
+                shade = true;
+            }
+        } else if (lights && !blocked) {
+            add_term(terms, pending.term, pending.diffuse_weight, pending.specular_weight, pending.radiance);
+        }
+        pending.ray = NO_RAY;
+        if (shade) {
+            HitPoint point = hit_point(hit, -wo, path.cone);
+            ended = scatters && !arrive(path, hit, point, terms);
+            if (!ended) {
+                float rays = path.vertex == 0u ? float(parameters.first_shadow_rays) : 1.0;
+                shadow_rays = (scatters ? uint(rays) : shadow_rays) - 1u;
+                path.numbers.dimension = scatters ? 1u + PAIRS_PER_VERTEX * path.vertex : EXTRA_PAIRS + 2u * shadow_rays;
+                vec2 choice = sample_2d(path.numbers);
+                pending = sample_direct(path, point, wo, vec4(choice, sample_2d(path.numbers)), rays);
+                pending.alpha_seed = alpha_seed(path) + 1u + shadow_rays;
+                if (shadow_rays == 0u) {
+                    path.numbers.dimension = 3u + PAIRS_PER_VERTEX * path.vertex;
+                    vec2 direction = sample_2d(path.numbers);
+                    ended = !scatter(path, point, wo, vec4(direction, sample_2d(path.numbers)), terms.attenuation);
+                    path.vertex++;
+                }
+            }
+        }
+        if (ended && pending.ray.t_max <= 0.0) {
+            sampled++;
+            terms.attenuation = sampled < samples ? vec3(0.0) : terms.attenuation;
+            if (sampled == samples) {
+                write_pixel(pixel, terms, counts);
+                terms = no_terms();
+                counts = uvec2(0u);
+                sampled = 0u;
+                turn++;
+                paths_left = find_pixel(group, thread, turn, pixel);
+            }
+            path = path_begin(pixel, frame.first_sample + sampled);
+            ended = false;
+        }
+    }
 }
 
 #endif

@@ -121,6 +121,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         trace: args.trace.clone(),
         parameters,
         all_effects: args.effects == EffectChoice::All,
+        merge_static: true,
         seed: args.seed,
         fps: args.fps,
         view: args.view(),

@@ -33,7 +33,8 @@ struct Pass {
     label: CString,
     pipeline: ComputePipeline,
     set: DescriptorSet,
-    extent: [u32; 2],
+    /// Workgroups.
+    groups: [u32; 3],
     barrier: bool,
 }
 
@@ -61,6 +62,15 @@ impl<'a> FrameBuilder<'a> {
         }
     }
 
+    pub fn gpu(&self) -> &Gpu {
+        self.gpu
+    }
+
+    /// Of the picture, pixels.
+    pub fn extent(&self) -> [u32; 2] {
+        self.extent
+    }
+
     /// An image of the picture's size, zero at first. Its name is that of its AOV.
     pub fn image(&mut self, name: &'static str, format: vk::Format) -> Result<ImageHandle, GpuError> {
         self.images.push((name, self.gpu.create_image(name, ImageInfo::storage(format, self.extent))?));
@@ -69,7 +79,7 @@ impl<'a> FrameBuilder<'a> {
 
     /// The next pass: a kernel by its stem below shaders_glsl/, over every pixel.
     pub fn pass(&mut self, name: &'static str, shader: &'static str) -> PassBuilder<'_, 'a> {
-        PassBuilder { name, shader, uses: Vec::new(), constants: self.constants.clone(), frame: self }
+        PassBuilder { name, shader, uses: Vec::new(), constants: self.constants.clone(), groups: None, frame: self }
     }
 
     pub fn build(self) -> FrameGraph {
@@ -104,6 +114,7 @@ pub struct PassBuilder<'b, 'a> {
     shader: &'static str,
     uses: Vec<(&'static str, ImageHandle, Access)>,
     constants: Vec<(u32, u32)>,
+    groups: Option<u32>,
 }
 
 impl PassBuilder<'_, '_> {
@@ -129,6 +140,12 @@ impl PassBuilder<'_, '_> {
         self
     }
 
+    /// So many workgroups instead of one invocation per pixel.
+    pub fn groups(mut self, count: u32) -> Self {
+        self.groups = Some(count);
+        self
+    }
+
     /// # Errors
     /// The declaration differs from the shader's: a variable without an image, an image without a variable, other access.
     pub fn add(self) -> Result<(), GpuError> {
@@ -144,7 +161,9 @@ impl PassBuilder<'_, '_> {
         }
         let barrier = frame.needs_barrier(&self.uses);
         let label = CString::new(self.name).expect("pass names have no zeros");
-        frame.passes.push(Pass { name: self.name, label, pipeline, set, extent: frame.extent, barrier });
+        let [width, height] = frame.extent;
+        let groups = self.groups.map_or_else(|| pipeline.groups([width, height, 1]), |count| [count, 1, 1]);
+        frame.passes.push(Pass { name: self.name, label, pipeline, set, groups, barrier });
         Ok(())
     }
 }
@@ -206,8 +225,7 @@ impl FrameGraph {
             if pass.barrier {
                 commands.barrier(compute, compute);
             }
-            let groups = pass.pipeline.groups([pass.extent[0], pass.extent[1], 1]);
-            commands.dispatch(&pass.pipeline, &[globals, &pass.set], &[], groups);
+            commands.dispatch(&pass.pipeline, &[globals, &pass.set], &[], pass.groups);
             commands.end_label();
             timer.mark(commands, index);
         }

@@ -5,10 +5,24 @@
 //! pixel, or 100 with terms; traces up to 2 (bounces + 1) + 1 rays per sample.
 
 use crate::frame::{FrameBuilder, ImageHandle};
-use crate::gpu::{GpuError, vk};
+use crate::gpu::{DeviceKind, GpuError, vk};
 
-/// Specialization constant: samples per pixel and frame.
+/// Specialization constants: samples per pixel and frame; tiles of a workgroup.
 const SAMPLES: u32 = 200;
+const TILES: u32 = 201;
+
+/// Tiles of 8x4 pixels that a workgroup works off, one pixel per thread and tile. More of them keep more threads busy while long paths
+/// go on; fewer keep more workgroups for wide devices.
+fn tiles_per_group(frame: &FrameBuilder) -> u32 {
+    let most = if frame.gpu().capabilities().kind == DeviceKind::Software { 16 } else { 4 };
+    // Enough workgroups for small pictures, too.
+    (tiles(frame) / 64).clamp(1, most)
+}
+
+fn tiles(frame: &FrameBuilder) -> u32 {
+    let [width, height] = frame.extent();
+    width.div_ceil(8) * height.div_ceil(4)
+}
 
 const RGBA: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
@@ -16,7 +30,8 @@ const RGBA: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 pub fn add(frame: &mut FrameBuilder, spp: u32) -> Result<ImageHandle, GpuError> {
     let radiance = frame.image("radiance", RGBA)?;
     let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
-    let pass = frame.pass("megakernel", "paths/megakernel").constant(SAMPLES, spp);
+    let (per_group, groups) = (tiles_per_group(frame), tiles(frame).div_ceil(tiles_per_group(frame)));
+    let pass = frame.pass("megakernel", "paths/megakernel").constant(SAMPLES, spp).constant(TILES, per_group).groups(groups);
     pass.writes("radiance", radiance).writes("ray_count", ray_count).add()?;
     Ok(radiance)
 }
@@ -57,7 +72,9 @@ pub fn add_with_terms(frame: &mut FrameBuilder) -> Result<Terms, GpuError> {
         specular_indirect: frame.image("specular_indirect", RGBA)?,
     };
     let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
-    let pass = frame.pass("megakernel", "paths/megakernel_terms").writes("ray_count", ray_count);
+    let (per_group, groups) = (tiles_per_group(frame), tiles(frame).div_ceil(tiles_per_group(frame)));
+    let pass = frame.pass("megakernel", "paths/megakernel_terms").constant(TILES, per_group).groups(groups);
+    let pass = pass.writes("ray_count", ray_count);
     terms.named().into_iter().fold(pass, |pass, (name, image)| pass.writes(name, image)).add()?;
     Ok(terms)
 }

@@ -16,6 +16,7 @@ pub mod error;
 pub mod gltf;
 pub mod lights;
 pub mod material;
+pub mod merge;
 pub mod packing;
 pub mod placed;
 pub mod pose;

@@ -10,6 +10,7 @@ use crate::gpu::{Buffer, FrameRing, Gpu, Image, Timer, vk};
 use crate::paths::{energy, gbuffer};
 use crate::scene::Scene;
 use crate::scene::effects::{Effect, EffectSet};
+use crate::scene::merge::merge_static;
 use crate::scene::placed::PlacedScene;
 use crate::scene::pose::Pose;
 use crate::scene::transform::world_transforms;
@@ -56,10 +57,13 @@ impl Renderer {
         let choice = accel::choose(&settings.trace, gpu.capabilities())?;
         tracing::info!("rays are traced by {}: {}", choice.entry.name, choice.reason);
         let (mut clock, mut build_ms, mut memory) = (Clock::start(), BuildTimes::default(), MemoryUse::default());
+        let effects = if settings.all_effects { EffectSet::all() } else { EffectSet::derive(&scene) };
+        if settings.merge_static {
+            merge_static(&mut scene);
+        }
         let trees = accel::order_scene(&mut scene);
         build_ms.order = clock.lap();
 
-        let effects = if settings.all_effects { EffectSet::all() } else { EffectSet::derive(&scene) };
         let before = gpu.allocated_bytes();
         let buffers = SceneBuffers::new(gpu, &scene)?;
         let placed = PlacedScene::new(gpu, &scene, FRAMES_IN_FLIGHT)?;

@@ -17,6 +17,8 @@ pub struct Settings {
     pub parameters: Parameters,
     /// Compile in every effect, also those that the scene does not call for.
     pub all_effects: bool,
+    /// Meshes that are placed once and never move become one (scene::merge): the same picture, sooner.
+    pub merge_static: bool,
     pub seed: u32,
     /// Frame i shows the scene at i / fps seconds.
     pub fps: f32,

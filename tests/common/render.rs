@@ -20,6 +20,7 @@ pub fn settings(width: u32, height: u32) -> Settings {
         trace: "auto".to_owned(),
         parameters: Parameters::default(),
         all_effects: false,
+        merge_static: true,
         seed: 1,
         fps: 30.0,
         view: ViewChoice::Scene(None),
