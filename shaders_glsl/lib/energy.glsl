@@ -1,7 +1,7 @@
 // The energy that one bounce between microfacets loses, given back.
 //
 // Single-scattering GGX with F = 1 loses, in a white furnace (on average | seen straight on | at 80 degrees):
-//     roughness 0.25: 0.5 % | 0.4 % | 6.5 %    0.5: 12 % | 8.4 % | 14 %    0.75: 34 % | 37 % | 21 %    1: 59 % | 69 % | 33 %
+//     roughness 0.25: 1.3 % | 0.4 % | 6.5 %    0.5: 12 % | 8.4 % | 14 %    0.75: 34 % | 37 % | 21 %    1: 59 % | 69 % | 33 %
 // The loss is returned as a diffuse-like lobe: Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH 2017
 // course: f = F_ms (1 - E(o)) (1 - E(i)) / (pi (1 - E_avg)), with Favg squared in F_ms as Hill corrected it. It is reciprocal.
 //
@@ -15,7 +15,7 @@
 // (1 - F_near) eta_near^2 = (1 - F_far) eta_far^2, so t_near = (1 - F_near) L_far_avg / max(L_near_avg, L_far_avg) does it, and is at most 1.
 //
 // src/paths/energy.rs computes the tables, and states their layout. In a furnace what is left is their interpolation error: within 0.5 %
-// from 0 to 87 degrees, 1 to 3 % beyond 89. Relative indices outside 1/3.1 .. 3.1 are treated as the nearest of these.
+// from 0 to 86.5 degrees for indices from 1.1 on, 1 to 3 % beyond 89 degrees. Relative indices outside 1/3.1 .. 3.1 are treated as the nearest of these.
 #ifndef LIB_ENERGY_GLSL
 #define LIB_ENERGY_GLSL
 
@@ -24,13 +24,15 @@
 #include "lib/microfacet.glsl"
 
 const bool COMPENSATE_ENERGY = ENERGY_COMPENSATION == 1u;
+/// Without any of these nothing rough reflects, the host makes no tables, and all surfaces are treated as mirrors of their f0 and f90.
+const bool ENERGY_TABLES = EFFECT_GLOSSY || EFFECT_ROUGH_TRANSMISSION || EFFECT_CLEARCOAT;
 
 // The same numbers as in src/paths/energy.rs.
 const uint COSINES = 32u;
 const uint ROUGHNESSES = 32u;
-const uint GLASS_COSINES = 16u;
-const uint GLASS_ROUGHNESSES = 16u;
-const uint GLASS_IORS = 17u;
+const uint GLASS_COSINES = 26u;
+const uint GLASS_ROUGHNESSES = 26u;
+const uint GLASS_IORS = 33u;
 const float GLASS_IOR_RANGE = 0.7155417528;
 const uint AVERAGES = COSINES * ROUGHNESSES;
 const uint GLASS = 2u * (AVERAGES + ROUGHNESSES);
@@ -50,7 +52,7 @@ vec2 ggx_entry(uint entry) {
 
 /// Albedo of the GGX reflection lobe for F = 1 in x, for F = Schlick's rise alone in y. Any Schlick F then reflects f0 (x - y) + f90 y.
 vec2 reflected_energy(float cosine, float alpha) {
-    if (alpha < MIRROR_ALPHA) {
+    if (!ENERGY_TABLES || alpha < MIRROR_ALPHA) {
         return vec2(1.0, schlick_rise(cosine));
     }
     uint column, row;
@@ -63,7 +65,7 @@ vec2 reflected_energy(float cosine, float alpha) {
 
 /// Its average over cosine-weighted directions.
 vec2 average_reflected_energy(float alpha) {
-    if (alpha < MIRROR_ALPHA) {
+    if (!ENERGY_TABLES || alpha < MIRROR_ALPHA) {
         return vec2(1.0, 1.0 / 21.0);
     }
     uint row;
@@ -145,7 +147,7 @@ float average_transmittance(float eta) {
 
 /// The lobes of a refracting boundary's lost energy, 1/sr, reflected (x) and transmitted (y), `cos_i` being on the respective side.
 vec2 lost_glass_lobes(float alpha, float eta, float f0, float f90, float cos_o, float cos_i) {
-    if (alpha < MIRROR_ALPHA) {
+    if (!EFFECT_ROUGH_TRANSMISSION || alpha < MIRROR_ALPHA) {
         return vec2(0.0);
     }
     vec3 weights = vec3(1.0, f0, f90);

@@ -67,8 +67,9 @@ impl Renderer {
         let before = gpu.allocated_bytes();
         let buffers = SceneBuffers::new(gpu, &scene)?;
         let placed = PlacedScene::new(gpu, &scene, FRAMES_IN_FLIGHT)?;
-        let energy_tables = if effects.contains(Effect::Glossy) || effects.contains(Effect::RoughTransmission) {
-            Some(gpu.upload("energy tables", &energy::energy_tables(), vk::BufferUsageFlags::empty())?)
+        let refraction = effects.contains(Effect::RoughTransmission);
+        let energy_tables = if refraction || effects.contains(Effect::Glossy) || effects.contains(Effect::Clearcoat) {
+            Some(gpu.upload("energy tables", &energy::energy_tables(refraction), vk::BufferUsageFlags::empty())?)
         } else {
             None
         };

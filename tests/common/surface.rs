@@ -108,7 +108,7 @@ pub const ENERGY_COMPENSATION: u32 = 106;
 
 /// Options with the energy tables, which live as long as the buffer.
 pub fn options(gpu: &Gpu, compensated: bool) -> (KernelOptions, Buffer) {
-    let tables = gpu.upload("energy tables", &energy_tables(), vk::BufferUsageFlags::empty()).unwrap();
+    let tables = gpu.upload("energy tables", &energy_tables(true), vk::BufferUsageFlags::empty()).unwrap();
     let frame = FrameData { energy_tables: tables.address(), environment_light: u32::MAX, ..Default::default() };
     (KernelOptions { constants: vec![(ENERGY_COMPENSATION, compensated.into())], frame, ..Default::default() }, tables)
 }
