@@ -52,6 +52,16 @@ fn center_radiance(scene: &Scene, frames: u32) -> f64 {
     mean(&render(&gpu, scene, &settings, frames).mean)
 }
 
+/// A plane through zero has no rounding error along its normal, and still rays that graze it must not meet it again.
+#[test]
+fn a_floor_does_not_light_itself() {
+    let gpu = common::gpu();
+    let mut settings = settings(64, 64);
+    settings.view = from_above(0.01);
+    let image = render(&gpu, &with_light(LightKind::Directional, 10.0, 2.0), &settings, 16).mean;
+    assert!(image.pixels.iter().all(|pixel| pixel[0] < 1.5916), "{:?}", image.pixels.iter().map(|p| p[0]).fold(0.0, f32::max));
+}
+
 #[test]
 fn a_point_light_of_100_candela_at_2_metres() {
     let expected = f64::from(100.0 / 4.0 * 0.5 / PI);
