@@ -7,7 +7,7 @@
 //
 // The diffuse base of a dielectric gets what reflection leaves, in the same form (Kelemen and Szirmay-Kalos, "A Microfacet Based
 // Coupled Specular-Matte BRDF Model", 2001): (1 - R(o)) (1 - R(i)) / (pi (1 - R_avg)) in place of appendix B's 1 - F(V.H), which gains
-// energy at grazing angles, up to 0.9 of the incoming. A thin wall transmits what its lost lobe does not reflect, 1 - F_ms.
+// energy at grazing angles. A thin wall transmits what its lost lobe does not reflect, 1 - F_ms.
 //
 // A rough refracting boundary loses L = 1 - E, E being reflection and refraction together, for the index of refraction of either side.
 // A share t of it is transmitted as (L_near(o) / pi) (L_far(i) / L_far_avg), the rest is reflected. Reciprocity demands that as much etendue

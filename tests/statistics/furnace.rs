@@ -93,6 +93,16 @@ fn refracting_glass_is_white_within_half_a_percent() {
     assert_white(&grid(|roughness| iors.iter().flat_map(|&ior| both_sides(ior, roughness)).collect()), 0.005);
 }
 
+#[test]
+fn a_clearcoat_leaves_white_surfaces_white_within_half_a_percent() {
+    let coated = |roughness| {
+        let coat = |clearcoat_roughness| Case { clearcoat: 0.7, clearcoat_roughness, ..Case::metal(roughness) };
+        let dielectric = |clearcoat_roughness| Case { clearcoat: 1.0, clearcoat_roughness, ..Case::dielectric(roughness, 1.5) };
+        [coat(0.0), coat(0.4), dielectric(0.0), dielectric(0.7)].to_vec()
+    };
+    assert_white(&grid(coated), 0.005);
+}
+
 /// What the compensation is for: the plain model's losses that lib/energy.glsl states, straight on and at 80 degrees.
 #[test]
 fn the_plain_model_loses_what_the_shader_says() {
