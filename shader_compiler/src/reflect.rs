@@ -1,7 +1,7 @@
 //! What a SPIR-V module says about itself.
 
 use rspirv::dr::{Instruction, Module, Operand};
-use rspirv::spirv::{Decoration, Op, StorageClass, Word};
+use rspirv::spirv::{Decoration, Dim, Op, StorageClass, Word};
 use std::collections::{HashMap, HashSet};
 
 /// How a kernel meets the host.
@@ -35,6 +35,8 @@ pub enum BindingKind {
     StorageBuffer,
     StorageImage,
     SampledImage,
+    /// A buffer read through a format: `usamplerBuffer`.
+    TexelBuffer,
     AccelerationStructure,
 }
 
@@ -115,6 +117,7 @@ impl<'a> Types<'a> {
             Op::TypeStruct => BindingKind::UniformBuffer,
             // Operand 5 is `Sampled`: 2 for images that are read and written without a sampler.
             Op::TypeImage if element.operands[5] == Operand::LiteralBit32(2) => BindingKind::StorageImage,
+            Op::TypeSampledImage if self.is_buffer_image(element) => BindingKind::TexelBuffer,
             Op::TypeSampledImage => BindingKind::SampledImage,
             Op::TypeAccelerationStructureKHR => BindingKind::AccelerationStructure,
             other => return Err(format!("a resource of type {other:?} is not supported")),
@@ -129,6 +132,11 @@ impl<'a> Types<'a> {
             readable: !self.is_decorated(variable, Decoration::NonReadable),
             writable: !self.is_decorated(variable, Decoration::NonWritable),
         })
+    }
+
+    fn is_buffer_image(&self, sampled: &Instruction) -> bool {
+        let image = sampled.operands[0].id_ref_any().map(|id| self.by_id[&id]);
+        image.is_some_and(|image| image.operands[1] == Operand::Dim(Dim::DimBuffer))
     }
 
     fn is_decorated(&self, id: Word, wanted: Decoration) -> bool {

@@ -5,7 +5,7 @@
 
 #include "shared/scene.glsl"
 
-/// An inner node, with the bounds of both its children: 64 bytes.
+/// An inner node, with the bounds of both its children: four texels.
 struct BvhNode {
     vec3 min0;
     /// A child: the index of its node, or BVH_LEAF and what the leaf holds. In the top level an instance's index; in a mesh's, the
@@ -43,10 +43,6 @@ struct BvhInstance {
 
 /// What FrameData.accel points at.
 struct BvhRoot {
-    /// BvhNode[]
-    Address nodes;
-    /// Three vec3 per triangle, mesh space, metres.
-    Address triangles;
     /// BvhInstance[]
     Address instances;
     /// The top level's root, as a child.

@@ -1,12 +1,13 @@
 //! `bvh`: a binary tree over instances and one per mesh, in buffers, for devices without ray query.
 //!
-//! Bytes per triangle: 36 for its corners in the order of the leaves (7 % faster than fetching them through the index buffer), and
+//! Bytes per triangle: 48 for its corners in the order of the leaves (7 % faster than fetching them through the index buffer), and
 //! about half a node of 64. Per instance and frame in flight: 64, and a node of the top level.
 
 use super::order::MeshTree;
 use super::top_level::TopLevel;
 use super::{Entry, Geometry, Slots, Structure, TraceError, check_count};
-use crate::gpu::{Buffer, Commands, Gpu, MemoryLocation, vk};
+use crate::frame::STRUCTURE_TEXELS;
+use crate::gpu::{Buffer, Commands, DescriptorSet, Gpu, MemoryLocation, TexelBuffer, vk};
 use crate::shared::{BVH_EMPTY, BVH_FIRST_MASK, BVH_LEAF, BVH_TOP_DEPTH, BvhInstance, BvhNode, BvhRoot, Instance};
 use rayon::prelude::*;
 
@@ -28,8 +29,8 @@ struct Bvh {
     /// What the top level needs to know of each mesh.
     placed: Vec<PlacedMesh>,
     /// Each slot's top level, then the nodes of all meshes.
-    nodes: Buffer,
-    triangles: Buffer,
+    nodes: TexelBuffer,
+    triangles: TexelBuffer,
     slots: Vec<Slot>,
     /// Most nodes of a top level.
     top_nodes: usize,
@@ -69,8 +70,8 @@ impl Bvh {
             gpu: gpu.clone(),
             meshes: geometry.trees.iter().map(|mesh| MeshTree { bounds: mesh.bounds, ..MeshTree::default() }).collect(),
             placed,
-            nodes: gpu.upload("bvh nodes", &nodes, none)?,
-            triangles: gpu.upload("bvh triangles", &corners(geometry), none)?,
+            nodes: gpu.upload_texels("bvh nodes", &nodes)?,
+            triangles: gpu.upload_texels("bvh triangles", &corners(geometry))?,
             slots: (0..geometry.frames_in_flight).map(slot).collect::<Result<_, TraceError>>()?,
             top_nodes,
             top: TopLevel::default(),
@@ -83,13 +84,7 @@ impl Bvh {
         self.top.rebuild(instances, &self.meshes);
         let first_node = (slot * self.top_nodes) as u32;
         let device = &self.slots[slot].device;
-        let root = BvhRoot {
-            nodes: self.nodes.address(),
-            triangles: self.triangles.address(),
-            instances: device.address() + ROOT_BYTES,
-            root: moved(self.top.tree.root, first_node, 0),
-            padding: 0,
-        };
+        let root = BvhRoot { instances: device.address() + ROOT_BYTES, root: moved(self.top.tree.root, first_node, 0), padding: 0 };
         let bytes = self.slots[slot].staging.mapped_mut().expect("host-visible memory is mapped");
         let (head, rest) = bytes.split_at_mut(ROOT_BYTES as usize);
         let (rows, nodes) = rest.split_at_mut(instances.len() * INSTANCE_BYTES as usize);
@@ -125,7 +120,7 @@ impl Structure for Bvh {
         commands.copy_buffer(staging, device, device.size());
         if top_nodes.size > 0 {
             // SAFETY: both ranges are inside their buffers. The slot's last frame is done, so nothing reads what is overwritten.
-            unsafe { self.gpu.raw().cmd_copy_buffer(commands.raw(), staging.raw(), self.nodes.raw(), &[top_nodes]) };
+            unsafe { self.gpu.raw().cmd_copy_buffer(commands.raw(), staging.raw(), self.nodes.buffer().raw(), &[top_nodes]) };
         }
         commands.barrier(vk::PipelineStageFlags::TRANSFER, vk::PipelineStageFlags::COMPUTE_SHADER);
     }
@@ -134,12 +129,15 @@ impl Structure for Bvh {
         self.slots[slot].device.address()
     }
 
-    fn top_levels(&self) -> Vec<vk::AccelerationStructureKHR> {
-        Vec::new()
+    fn bind(&self, _slot: usize, set: &DescriptorSet) {
+        set.write_texel_buffer(STRUCTURE_TEXELS[0], &self.nodes);
+        set.write_texel_buffer(STRUCTURE_TEXELS[1], &self.triangles);
     }
 
     fn memory_bytes(&self) -> u64 {
-        self.nodes.size() + self.triangles.size() + self.slots.iter().map(|slot| slot.device.size() + slot.staging.size()).sum::<u64>()
+        self.nodes.buffer().size()
+            + self.triangles.buffer().size()
+            + self.slots.iter().map(|slot| slot.device.size() + slot.staging.size()).sum::<u64>()
     }
 }
 
@@ -174,12 +172,16 @@ fn moved(child: u32, nodes: u32, triangles: u32) -> u32 {
     }
 }
 
-/// Corners of all triangles of all meshes.
-fn corners(geometry: &Geometry) -> Vec<[[f32; 3]; 3]> {
+/// Corners of all triangles of all meshes, a texel each.
+fn corners(geometry: &Geometry) -> Vec<[[f32; 4]; 3]> {
     let meshes = geometry.scene.meshes.iter();
     let mut corners = Vec::with_capacity(meshes.clone().map(|mesh| mesh.triangles.len()).sum());
     for mesh in meshes {
-        corners.par_extend(mesh.triangles.par_iter().map(|triangle| triangle.map(|vertex| mesh.positions[vertex as usize])));
+        corners.par_extend(mesh.triangles.par_iter().map(|triangle| triangle.map(|vertex| corner(mesh.positions[vertex as usize]))));
     }
     corners
+}
+
+fn corner([x, y, z]: [f32; 3]) -> [f32; 4] {
+    [x, y, z, 0.0]
 }

@@ -14,7 +14,7 @@ pub use bounds::Aabb;
 pub use order::{MeshTree, order_scene};
 pub use tree::{Item, Limits, Tree};
 
-use crate::gpu::{Capabilities, Commands, DeviceKind, Gpu, GpuError, vk};
+use crate::gpu::{Capabilities, Commands, DescriptorSet, DeviceKind, Gpu, GpuError, vk};
 use crate::scene::Scene;
 use crate::shared::Instance;
 
@@ -47,8 +47,9 @@ pub trait Structure: Send {
     /// What [`crate::shared::FrameData::accel`] must hold in this slot.
     fn root(&self, slot: usize) -> u64;
 
-    /// Of each slot, for set 0; empty where the structure is made of buffers.
-    fn top_levels(&self) -> Vec<vk::AccelerationStructureKHR>;
+    /// Writes what the structure's shader half reads into set 0 of a slot ([`crate::frame::TOP_LEVEL`] or
+    /// [`crate::frame::STRUCTURE_TEXELS`]).
+    fn bind(&self, slot: usize, set: &DescriptorSet);
 
     /// Bytes on the device, both levels.
     fn memory_bytes(&self) -> u64;

@@ -8,7 +8,8 @@
 //! behind it.
 
 use super::{Entry, Geometry, MeshGeometry, Slots, Structure, TraceError, check_count};
-use crate::gpu::{Buffer, Commands, Gpu, GpuError, MemoryLocation, vk};
+use crate::frame::TOP_LEVEL;
+use crate::gpu::{Buffer, Commands, DescriptorSet, Gpu, GpuError, MemoryLocation, vk};
 use crate::scene::{AlphaMode, Scene};
 use crate::shared::{INSTANCE_ALPHA, Instance};
 use ash::khr::acceleration_structure::Device as Functions;
@@ -92,8 +93,8 @@ impl Structure for RayQuery {
         0
     }
 
-    fn top_levels(&self) -> Vec<vk::AccelerationStructureKHR> {
-        self.slots.iter().map(|slot| slot.structure.raw).collect()
+    fn bind(&self, slot: usize, set: &DescriptorSet) {
+        set.write_acceleration_structure(TOP_LEVEL, self.slots[slot].structure.raw);
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -7,13 +7,15 @@ use std::sync::Arc;
 
 const FRAME_BLOCK: u32 = 0;
 const TEXTURES: u32 = 1;
-const TOP_LEVEL: u32 = 2;
+/// For acceleration structures: the driver's own, or texel buffers (nodes, triangles).
+pub const TOP_LEVEL: u32 = 2;
+pub const STRUCTURE_TEXELS: [u32; 2] = [3, 4];
 
 /// What the sets are made for.
 pub struct GlobalsInfo<'a> {
     pub textures: &'a [TextureImage],
-    /// Top-level structure of each frame in flight; empty where rays are not traced by ray query.
-    pub top_levels: &'a [vk::AccelerationStructureKHR],
+    /// Writes the acceleration structure's descriptors into the set of a frame in flight.
+    pub bind_structure: &'a dyn Fn(usize, &DescriptorSet),
     pub frames_in_flight: usize,
 }
 
@@ -24,11 +26,12 @@ pub struct Globals {
 }
 
 /// The layout of set 0 for a number of textures.
-pub fn globals_layout(gpu: &Gpu, textures: usize) -> Result<Arc<SetLayout>, GpuError> {
+fn globals_layout(gpu: &Gpu, textures: usize) -> Result<Arc<SetLayout>, GpuError> {
     let mut bindings = vec![
         (FRAME_BLOCK, vk::DescriptorType::UNIFORM_BUFFER, 1),
-        // At least two, so that the array counts as partly bound.
-        (TEXTURES, vk::DescriptorType::COMBINED_IMAGE_SAMPLER, textures.max(2) as u32),
+        (TEXTURES, vk::DescriptorType::COMBINED_IMAGE_SAMPLER, textures.max(1) as u32),
+        (STRUCTURE_TEXELS[0], vk::DescriptorType::UNIFORM_TEXEL_BUFFER, 1),
+        (STRUCTURE_TEXELS[1], vk::DescriptorType::UNIFORM_TEXEL_BUFFER, 1),
     ];
     if gpu.capabilities().ray_query {
         bindings.push((TOP_LEVEL, vk::DescriptorType::ACCELERATION_STRUCTURE_KHR, 1));
@@ -53,9 +56,7 @@ impl Globals {
             let set = DescriptorSet::new(&layout)?;
             set.write_buffer(FRAME_BLOCK, &buffer, size);
             set.write_textures(TEXTURES, info.textures);
-            if let Some(&top_level) = info.top_levels.get(index) {
-                set.write_acceleration_structure(TOP_LEVEL, top_level);
-            }
+            (info.bind_structure)(index, &set);
             Ok((set, buffer))
         };
         let slots = (0..info.frames_in_flight).map(slot).collect::<Result<_, GpuError>>()?;

@@ -3,5 +3,5 @@
 mod globals;
 mod graph;
 
-pub use globals::{Globals, GlobalsInfo, globals_layout};
+pub use globals::{Globals, GlobalsInfo, STRUCTURE_TEXELS, TOP_LEVEL};
 pub use graph::{FrameBuilder, FrameGraph, ImageHandle, PassBuilder};

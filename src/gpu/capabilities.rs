@@ -33,6 +33,8 @@ pub struct Capabilities {
     pub max_storage_buffer_range: u64,
     pub max_workgroup_invocations: u32,
     pub max_textures: u32,
+    /// Of one texel buffer.
+    pub max_texels: u32,
     pub device_local_memory: u64,
     /// Required features that are missing: the device cannot be used.
     pub missing: Vec<&'static str>,
@@ -76,6 +78,7 @@ impl Capabilities {
             max_storage_buffer_range: limits.max_storage_buffer_range.into(),
             max_workgroup_invocations: limits.max_compute_work_group_invocations,
             max_textures: limits.max_per_stage_descriptor_sampled_images.min(limits.max_per_stage_descriptor_samplers),
+            max_texels: limits.max_texel_buffer_elements,
             device_local_memory: device_local_memory(instance, device),
             missing: Vec::new(),
             pipeline_cache_uuid: properties.pipeline_cache_uuid,

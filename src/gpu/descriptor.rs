@@ -1,6 +1,6 @@
 //! Descriptor set layouts and sets.
 
-use super::buffer::Buffer;
+use super::buffer::{Buffer, TexelBuffer};
 use super::device::Gpu;
 use super::error::{Context, GpuError};
 use super::image::{Image, TextureImage};
@@ -21,12 +21,13 @@ fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
         BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
         BindingKind::SampledImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+        BindingKind::TexelBuffer => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
         BindingKind::AccelerationStructure => vk::DescriptorType::ACCELERATION_STRUCTURE_KHR,
     }
 }
 
 impl SetLayout {
-    /// `bindings`: number, type and count of descriptors; a count above 1 may be partly bound.
+    /// `bindings`: number, type and count of descriptors. All may be partly bound: what a kernel uses must be there.
     pub fn new(gpu: &Gpu, bindings: Vec<(u32, vk::DescriptorType, u32)>) -> Result<Arc<Self>, GpuError> {
         let stage = vk::ShaderStageFlags::COMPUTE;
         let raw_bindings: Vec<_> = bindings
@@ -36,8 +37,7 @@ impl SetLayout {
             })
             .map(|binding| binding.stage_flags(stage))
             .collect();
-        let partial = |count| if count > 1 { vk::DescriptorBindingFlags::PARTIALLY_BOUND } else { vk::DescriptorBindingFlags::empty() };
-        let flags: Vec<_> = bindings.iter().map(|&(.., count)| partial(count)).collect();
+        let flags = vec![vk::DescriptorBindingFlags::PARTIALLY_BOUND; bindings.len()];
         let mut flags = vk::DescriptorSetLayoutBindingFlagsCreateInfo::default().binding_flags(&flags);
         let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&raw_bindings).push_next(&mut flags);
         // SAFETY: plain creation, destroyed in drop.
@@ -121,6 +121,12 @@ impl DescriptorSet {
             let write = vk::WriteDescriptorSet::default().dst_binding(binding);
             self.write(write.descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER).image_info(&infos));
         }
+    }
+
+    pub fn write_texel_buffer(&self, binding: u32, texels: &TexelBuffer) {
+        let views = [texels.view()];
+        let write = vk::WriteDescriptorSet::default().dst_binding(binding).descriptor_type(vk::DescriptorType::UNIFORM_TEXEL_BUFFER);
+        self.write(write.texel_buffer_view(&views));
     }
 
     pub fn write_acceleration_structure(&self, binding: u32, structure: vk::AccelerationStructureKHR) {

@@ -17,7 +17,7 @@ mod submit;
 mod timer;
 
 pub use ash::vk;
-pub use buffer::Buffer;
+pub use buffer::{Buffer, TexelBuffer};
 pub use capabilities::{Capabilities, DeviceKind, Substitute};
 pub use command::Commands;
 pub use descriptor::{DescriptorSet, SetLayout};

@@ -6,7 +6,7 @@ use super::timings::{BuildTimes, MemoryUse, RayCounts, Recorder, Timings};
 use crate::accel::{self, Structure};
 use crate::display;
 use crate::frame::{FrameBuilder, FrameGraph, Globals, GlobalsInfo, ImageHandle};
-use crate::gpu::{Buffer, FrameRing, Gpu, Image, Timer, vk};
+use crate::gpu::{Buffer, DescriptorSet, FrameRing, Gpu, Image, Timer, vk};
 use crate::paths::{energy, gbuffer};
 use crate::scene::Scene;
 use crate::scene::effects::{Effect, EffectSet};
@@ -85,8 +85,8 @@ impl Renderer {
         memory.structure = structure.memory_bytes();
 
         let before = gpu.allocated_bytes();
-        let top_levels = structure.top_levels();
-        let info = GlobalsInfo { textures: &buffers.textures, top_levels: &top_levels, frames_in_flight: FRAMES_IN_FLIGHT };
+        let bind_structure = |slot: usize, set: &DescriptorSet| structure.bind(slot, set);
+        let info = GlobalsInfo { textures: &buffers.textures, bind_structure: &bind_structure, frames_in_flight: FRAMES_IN_FLIGHT };
         let globals = Globals::new(gpu, &info)?;
         let constants = [effects.specialization(), settings.parameters.constants()].concat();
         let mut frame = FrameBuilder::new(gpu, &globals, choice.entry.stem, constants, settings.extent);

@@ -8,14 +8,15 @@ use std::path::Path;
 
 /// What a kernel may need beside its inputs.
 #[derive(Default)]
-pub struct KernelOptions {
+pub struct KernelOptions<'a> {
     pub defines: Vec<(String, String)>,
     /// Specialization constants: id and word.
     pub constants: Vec<(u32, u32)>,
     pub frame: FrameData,
     pub parameters: Parameters,
     /// For kernels that trace by ray query.
-    pub top_levels: Vec<vk::AccelerationStructureKHR>,
+    /// Writes an acceleration structure's descriptors into set 0.
+    pub bind_structure: Option<&'a dyn Fn(&DescriptorSet)>,
 }
 
 const HEADER: &str = "
@@ -41,14 +42,15 @@ pub fn run_kernel<I: Pod, O: Pod>(gpu: &Gpu, source: &str, inputs: &[I]) -> Vec<
     run_kernel_with(gpu, source, inputs, &KernelOptions::default())
 }
 
-pub fn run_kernel_with<I: Pod, O: Pod>(gpu: &Gpu, source: &str, inputs: &[I], options: &KernelOptions) -> Vec<O> {
+pub fn run_kernel_with<I: Pod, O: Pod>(gpu: &Gpu, source: &str, inputs: &[I], options: &KernelOptions<'_>) -> Vec<O> {
     let (head, body) = source.split_once("void kernel(").expect("the source defines `void kernel(uint i)`");
     // Helper functions between the structs and the kernel may use `inputs`, so the header goes right after the last struct.
     let structs_end = head.rfind("};").map_or(head.len(), |at| at + 2);
     let text = format!("{}{HEADER}{}void kernel({body}{MAIN}", &head[..structs_end], &head[structs_end..]);
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders_glsl");
     let spirv = shader_compiler::compile(&root, "test kernel", &text, &options.defines).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let mut globals = Globals::new(gpu, &GlobalsInfo { textures: &[], top_levels: &options.top_levels, frames_in_flight: 1 }).unwrap();
+    let bind = |_: usize, set: &DescriptorSet| options.bind_structure.iter().for_each(|bind| bind(set));
+    let mut globals = Globals::new(gpu, &GlobalsInfo { textures: &[], bind_structure: &bind, frames_in_flight: 1 }).unwrap();
     globals.write(0, &options.frame, &options.parameters);
     let pipeline = ComputePipeline::new(gpu, "test kernel", &spirv, globals.layout(), &options.constants).unwrap();
     let own = DescriptorSet::new(pipeline.own_layout()).unwrap();

@@ -4,7 +4,7 @@ use super::{KernelOptions, run_kernel_with};
 use bytemuck::Pod;
 use glam::{DMat4, DVec3, DVec4};
 use pathspace::accel::{self, Geometry, REGISTRY, Structure};
-use pathspace::gpu::{Buffer, Gpu, vk};
+use pathspace::gpu::{Buffer, DescriptorSet, Gpu, vk};
 use pathspace::scene::transform::world_transforms;
 use pathspace::scene::upload::SceneBuffers;
 use pathspace::scene::{AlphaMode, Instance, Local, Mesh, Node, Scene};
@@ -87,11 +87,12 @@ impl<'a> Traced<'a> {
     pub fn run<I: Pod, O: Pod>(&self, stem: &str, kernel: &str, inputs: &[I], constants: &[(u32, u32)]) -> Vec<O> {
         let structure = &self.structures.iter().find(|(name, _)| *name == stem).expect("the device has the structure").1;
         let instances = self.gpu.upload("instances", &self.instances, vk::BufferUsageFlags::empty()).unwrap();
+        let bind = |set: &DescriptorSet| structure.bind(self.slot, set);
         let options = KernelOptions {
             defines: shader_compiler::structure_defines(stem),
             constants: constants.to_vec(),
             frame: self.frame(&instances, structure.root(self.slot)),
-            top_levels: structure.top_levels().get(self.slot).copied().into_iter().collect(),
+            bind_structure: Some(&bind),
             ..Default::default()
         };
         run_kernel_with(self.gpu, kernel, inputs, &options)

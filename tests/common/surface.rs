@@ -107,7 +107,7 @@ pub const DIFFUSE_MODEL: u32 = 105;
 pub const ENERGY_COMPENSATION: u32 = 106;
 
 /// Options with the energy tables, which live as long as the buffer.
-pub fn options(gpu: &Gpu, compensated: bool) -> (KernelOptions, Buffer) {
+pub fn options(gpu: &Gpu, compensated: bool) -> (KernelOptions<'static>, Buffer) {
     let tables = gpu.upload("energy tables", &energy_tables(true), vk::BufferUsageFlags::empty()).unwrap();
     let frame = FrameData { energy_tables: tables.address(), environment_light: u32::MAX, ..Default::default() };
     (KernelOptions { constants: vec![(ENERGY_COMPENSATION, compensated.into())], frame, ..Default::default() }, tables)

@@ -105,7 +105,7 @@ fn light_scene(kind: LightKind, world: DMat4) -> Scene {
 
 /// A scene's lights in device memory.
 struct Lit {
-    options: KernelOptions,
+    options: KernelOptions<'static>,
     table: LightTable,
     _buffers: Vec<Buffer>,
 }
