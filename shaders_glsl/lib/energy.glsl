@@ -1,7 +1,7 @@
 // The energy that one bounce between microfacets loses, given back.
 //
 // Single-scattering GGX with F = 1 loses, in a white furnace (on average | seen straight on | at 80 degrees):
-//     roughness 0.25: 1.3 % | 0.4 % | 6.5 %    0.5: 12 % | 8.4 % | 14 %    0.75: 34 % | 37 % | 21 %    1: 59 % | 69 % | 33 %
+//     roughness 0.25: 1.3 % | 0.5 % | 6.7 %    0.5: 12 % | 8.4 % | 16 %    0.75: 36 % | 37 % | 28 %    1: 62 % | 69 % | 48 %
 // The loss is returned as a diffuse-like lobe: Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH 2017
 // course: f = F_ms (1 - E(o)) (1 - E(i)) / (pi (1 - E_avg)), with Favg squared in F_ms as Hill corrected it. It is reciprocal.
 //

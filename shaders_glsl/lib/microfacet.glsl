@@ -1,4 +1,4 @@
-// Isotropic GGX: distribution, height-correlated Smith visibility, sampling of visible normals. Directions with a `_local` frame have
+// Isotropic GGX: distribution, Smith visibility, sampling of visible normals. Directions with a `_local` frame have
 // the shading normal along +z; the other functions take the cosines they need.
 //
 // Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007 (distribution: equation 33; half vectors and
@@ -7,11 +7,13 @@
 // VNDF Sampling for Smith-GGX Reflections", SIGGRAPH Asia 2023 (equations 5 and 6, listings 1 and 2).
 //
 // Deviations and why: sin^2 of the half vector is taken from the cross product, not 1 - cos^2, which has no digits left below alpha 0.01.
-// Refraction uses the same height-correlated term as reflection (as pbrt-v4 does).
+// Masking and shadowing are separable in the plain model, since glTF 2.0 appendix B.3.2 states their product, and height-correlated,
+// which is the more accurate form and what the tables hold, with ENERGY_COMPENSATION. Refraction uses the same term as reflection.
 #ifndef LIB_MICROFACET_GLSL
 #define LIB_MICROFACET_GLSL
 
 #include "lib/constants.glsl"
+#include "shared/parameters.glsl"
 
 /// Below this alpha (roughness 0.032) a lobe is a mirror: it is narrower than a tenth of a degree, and single precision cannot tell
 /// its directions apart. src/scene/effects.rs classifies materials with the same number.
@@ -34,9 +36,14 @@ float stretched_length(float alpha, float cosine) {
     return sqrt(alpha * alpha * (1.0 - cosine * cosine) + cosine * cosine);
 }
 
-/// Height-correlated Smith G2 / (4 cos_o cos_i), for positive cosines.
+/// Smith G2 / (4 cos_o cos_i), for positive cosines.
 float smith_visibility(float alpha, float cos_o, float cos_i) {
-    return 0.5 / max(cos_i * stretched_length(alpha, cos_o) + cos_o * stretched_length(alpha, cos_i), 1e-20);
+    float length_o = stretched_length(alpha, cos_o);
+    float length_i = stretched_length(alpha, cos_i);
+    if (ENERGY_COMPENSATION == 0u) {
+        return 1.0 / max((cos_o + length_o) * (cos_i + length_i), 1e-20);
+    }
+    return 0.5 / max(cos_i * length_o + cos_o * length_i, 1e-20);
 }
 
 /// Equation 5: how far the cap of visible normals reaches if only those that reflect upwards are wanted; 1 keeps all.

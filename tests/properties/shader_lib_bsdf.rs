@@ -121,10 +121,10 @@ mod appendix_b {
         if h.z > 0.0 { a2 / (PI * (h.z * h.z * (a2 - 1.0) + 1.0).powi(2)) } else { 0.0 }
     }
 
-    /// Smith's G2, height-correlated.
+    /// Smith's G2, separable (B.3.2).
     fn masking(alpha: f64, cosines: [f64; 2]) -> f64 {
         let lambda = |cosine: f64| 0.5 * ((1.0 + alpha * alpha * (1.0 / (cosine * cosine) - 1.0)).sqrt() - 1.0);
-        1.0 / (1.0 + lambda(cosines[0]) + lambda(cosines[1]))
+        1.0 / ((1.0 + lambda(cosines[0])) * (1.0 + lambda(cosines[1])))
     }
 
     /// Unpolarised, by the cosines of Snell's law.

@@ -106,7 +106,7 @@ fn a_clearcoat_leaves_white_surfaces_white_within_half_a_percent() {
 /// What the compensation is for: the plain model's losses that lib/energy.glsl states, straight on and at 80 degrees.
 #[test]
 fn the_plain_model_loses_what_the_shader_says() {
-    let stated = [(0.25, 0.004, 0.065), (0.5, 0.084, 0.144), (0.75, 0.373, 0.211), (1.0, 0.693, 0.332)];
+    let stated = [(0.25, 0.005, 0.067), (0.5, 0.084, 0.163), (0.75, 0.373, 0.280), (1.0, 0.693, 0.477)];
     for (roughness, straight, grazing) in stated {
         let cases = [Case::metal(roughness).seen_at(1.0), Case::metal(roughness).seen_at(80f32.to_radians().cos())];
         for (albedo, loss) in albedos(&cases, false).iter().zip([straight, grazing]) {
