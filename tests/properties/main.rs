@@ -9,6 +9,7 @@ mod glb;
 mod surface;
 
 mod accel_parity;
+mod assets;
 mod builtin;
 mod effects;
 mod gpu_kernel;

@@ -11,7 +11,7 @@ use super::surface::Surface;
 use super::{Options, TriangleRange};
 use glam::{Quat, Vec2, Vec3, vec2, vec3};
 use serde_json::json;
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 pub const TRIANGLES: TriangleRange = TriangleRange { default: 80_000, min: 10_000, max: 5_000_000 };
 
@@ -19,7 +19,7 @@ const WARM: [f32; 3] = [1.0, 0.6, 0.25];
 const DUSK: [f32; 3] = [0.35, 0.55, 1.0];
 const CANDLES: u32 = 8;
 /// The sculpture at the far end.
-const PLINTH: Vec3 = vec3(-0.2, 1.55, -8.6);
+const PLINTH: Vec3 = vec3(-0.2, 1.62, -8.6);
 
 pub fn make(options: &Options) -> Vec<u8> {
     let mut hall = Hall { document: Document::new("hall"), detail: 0.0, relief: 0.0 };
@@ -146,9 +146,12 @@ impl Hall {
         let knot = self.build([masonry::knot()]);
         let geometry = self.document.add_geometry(&knot);
         let mesh = self.document.add_mesh("knot", &[(&geometry, gold)]);
-        let node = self.document.add_node(json!({ "name": "knot", "mesh": mesh, "translation": PLINTH.to_array() }));
+        let upright = Quat::from_rotation_x(FRAC_PI_2);
+        let node = self
+            .document
+            .add_node(json!({ "name": "knot", "mesh": mesh, "translation": PLINTH.to_array(), "rotation": upright.to_array() }));
         let times: Vec<f32> = (0..=8).map(|i| i as f32 * 1.5).collect();
-        let turns: Vec<Vec<f32>> = times.iter().map(|t| Quat::from_rotation_y(t / 12.0 * TAU).to_array().to_vec()).collect();
+        let turns: Vec<Vec<f32>> = times.iter().map(|t| (Quat::from_rotation_y(t / 12.0 * TAU) * upright).to_array().to_vec()).collect();
         self.document.animate(node, "rotation", &times, &turns);
         let plinth = fixed.plinth.clone().translated(vec3(PLINTH.x, 0.0, PLINTH.z));
         self.document.add_object("plinth", &plinth, basalt);
