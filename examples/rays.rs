@@ -142,7 +142,8 @@ impl<'a> Tracer<'a> {
     fn new(gpu: &'a Gpu, entry: &accel::Entry, geometry: &Geometry, buffers: &SceneBuffers, instances: &[Instance]) -> Result<Self> {
         let mut structure = (entry.build)(gpu, geometry)?;
         gpu.submit_once(|commands| structure.update(commands, 0, instances))?;
-        let info = GlobalsInfo { textures: &[], top_levels: &structure.top_levels(), frames_in_flight: 1 };
+        let bind_structure = |slot: usize, set: &DescriptorSet| structure.bind(slot, set);
+        let info = GlobalsInfo { textures: &[], bind_structure: &bind_structure, frames_in_flight: 1 };
         let mut globals = Globals::new(gpu, &info)?;
         let instance_buffer = gpu.upload("instances", instances, vk::BufferUsageFlags::empty())?;
         let frame = FrameData {

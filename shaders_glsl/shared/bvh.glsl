@@ -1,5 +1,5 @@
 // The binary bounding volume hierarchy of accel/structures/bvh.glsl, two levels in one array of nodes: the top level over instances,
-// then each mesh's own. The host's structs are generated from this file when built.
+// or parts of them, then each mesh's own. The host's structs are generated from this file when built.
 #ifndef SHARED_BVH_GLSL
 #define SHARED_BVH_GLSL
 
@@ -8,7 +8,7 @@
 /// An inner node, with the bounds of both its children: four texels.
 struct BvhNode {
     vec3 min0;
-    /// A child: the index of its node, or BVH_LEAF and what the leaf holds. In the top level an instance's index; in a mesh's, the
+    /// A child: the index of its node, or BVH_LEAF and what the leaf holds. In the top level the index of a BvhEntry; in a mesh's, the
     /// number of triangles less one in bits 29 and 30 and the first one's index in the array of triangles below.
     uint child0;
     vec3 max0;
@@ -29,25 +29,22 @@ const uint BVH_EMPTY = 0xffffffffu;
 const uint BVH_TOP_DEPTH = 24u;
 const uint BVH_MESH_DEPTH = 40u;
 
-/// What a ray needs to go on inside an instance: 64 bytes.
-struct BvhInstance {
+/// Part of an instance, and what a ray needs to go on inside it: four texels, in the same array as the nodes.
+struct BvhEntry {
     vec4 world_to_object[3];
-    /// The mesh's root, as a child.
+    /// The part's root, as a child.
     uint root;
     /// Of the mesh, in the array of triangles.
     uint first_triangle;
+    uint instance;
     /// INSTANCE_* bits.
     uint flags;
-    uint padding;
 };
 
 /// What FrameData.accel points at.
 struct BvhRoot {
-    /// BvhInstance[]
-    Address instances;
     /// The top level's root, as a child.
     uint root;
-    uint padding;
 };
 
 #endif

@@ -47,6 +47,11 @@ impl Aabb {
         self.min * 0.5 + self.max * 0.5
     }
 
+    pub fn half_area(&self) -> f32 {
+        let edge = self.extent().max(Vec3A::ZERO);
+        edge.dot(Vec3A::new(edge.y, edge.z, edge.x))
+    }
+
     /// Largest absolute coordinate; 0 where empty.
     pub fn largest_coordinate(&self) -> f32 {
         if self.is_empty() { 0.0 } else { self.min.abs().max(self.max.abs()).max_element() }

@@ -1,14 +1,13 @@
-//! `bvh`: a binary tree over instances and one per mesh, in buffers, for devices without ray query.
+//! `bvh`: a binary tree over instances and one per mesh, in texel buffers, for devices without ray query.
 //!
 //! Bytes per triangle: 48 for its corners in the order of the leaves (7 % faster than fetching them through the index buffer), and
-//! about half a node of 64. Per instance and frame in flight: 64, and a node of the top level.
+//! about half a node of 64. Per part of an instance (top_level.rs) and frame in flight: 64, and a node of the top level.
 
-use super::order::MeshTree;
-use super::top_level::TopLevel;
+use super::top_level::{Crown, TopLevel, most_entries};
 use super::{Entry, Geometry, Slots, Structure, TraceError, check_count};
 use crate::frame::STRUCTURE_TEXELS;
 use crate::gpu::{Buffer, Commands, DescriptorSet, Gpu, MemoryLocation, TexelBuffer, vk};
-use crate::shared::{BVH_EMPTY, BVH_FIRST_MASK, BVH_LEAF, BVH_TOP_DEPTH, BvhInstance, BvhNode, BvhRoot, Instance};
+use crate::shared::{BVH_EMPTY, BVH_FIRST_MASK, BVH_LEAF, BVH_TOP_DEPTH, BvhEntry, BvhNode, BvhRoot, Instance};
 use rayon::prelude::*;
 
 pub const ENTRY: Entry = Entry {
@@ -19,89 +18,82 @@ pub const ENTRY: Entry = Entry {
     build: |gpu, geometry| Ok(Box::new(Bvh::new(gpu, geometry)?)),
 };
 
-const NODE_BYTES: u64 = size_of::<BvhNode>() as u64;
-const INSTANCE_BYTES: u64 = size_of::<BvhInstance>() as u64;
-const ROOT_BYTES: u64 = size_of::<BvhRoot>() as u64;
+/// Of a node, and of an entry.
+const NODE_BYTES: usize = size_of::<BvhNode>();
+const _: () = assert!(size_of::<BvhEntry>() == NODE_BYTES);
 
 struct Bvh {
     gpu: Gpu,
-    meshes: Vec<MeshTree>,
-    /// What the top level needs to know of each mesh.
-    placed: Vec<PlacedMesh>,
-    /// Each slot's top level, then the nodes of all meshes.
+    /// Of each mesh, as placed in the array of all nodes.
+    crowns: Vec<Crown>,
+    /// Of each mesh, in the array of all triangles.
+    first_triangles: Vec<u32>,
+    /// Each slot's entries and top level, then the nodes of all meshes.
     nodes: TexelBuffer,
     triangles: TexelBuffer,
     slots: Vec<Slot>,
-    /// Most nodes of a top level.
-    top_nodes: usize,
+    /// Most entries of a slot; its top level has as many nodes at most.
+    most_entries: usize,
     top: TopLevel,
     updates: Slots,
 }
 
-/// Where a mesh lies in the arrays of all meshes.
-#[derive(Clone, Copy)]
-struct PlacedMesh {
-    root: u32,
-    first_triangle: u32,
-}
-
-/// What changes from frame to frame: written by the host into `staging`, read by the device from `device` and the nodes.
+/// What changes from frame to frame is written by the host into `staging`, and read by the device from here and from the nodes.
 struct Slot {
+    /// The slot's part of the nodes, then its BvhRoot.
     staging: Buffer,
-    /// BvhRoot, then BvhInstance of each instance.
-    device: Buffer,
+    root: Buffer,
 }
 
 impl Bvh {
     fn new(gpu: &Gpu, geometry: &Geometry) -> Result<Self, TraceError> {
-        let instances = geometry.scene.instances.len();
         let triangles: usize = geometry.scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        let most_entries = most_entries(geometry.scene.instances.len());
         check_count(ENTRY.name, "triangles", triangles, BVH_FIRST_MASK as usize)?;
-        check_count(ENTRY.name, "instances", instances, 1 << BVH_TOP_DEPTH)?;
-        let top_nodes = instances.saturating_sub(1);
-        let (nodes, placed) = join_meshes(geometry, top_nodes * geometry.frames_in_flight);
-        let none = vk::BufferUsageFlags::empty();
-        let size = ROOT_BYTES + instances as u64 * INSTANCE_BYTES;
+        check_count(ENTRY.name, "parts of instances", most_entries, 1 << BVH_TOP_DEPTH)?;
+        let (nodes, crowns, first_triangles) = join_meshes(geometry, 2 * most_entries * geometry.frames_in_flight);
         let slot = |_| {
-            let staging = gpu.create_buffer("bvh staging", size + top_nodes as u64 * NODE_BYTES, none, MemoryLocation::CpuToGpu)?;
-            Ok(Slot { staging, device: gpu.create_buffer("bvh instances", size, none, MemoryLocation::GpuOnly)? })
+            let (none, root_bytes) = (vk::BufferUsageFlags::empty(), size_of::<BvhRoot>());
+            let staging_bytes = (2 * most_entries * NODE_BYTES + root_bytes) as u64;
+            let staging = gpu.create_buffer("bvh staging", staging_bytes, none, MemoryLocation::CpuToGpu)?;
+            Ok(Slot { staging, root: gpu.create_buffer("bvh root", root_bytes as u64, none, MemoryLocation::GpuOnly)? })
         };
         Ok(Self {
             gpu: gpu.clone(),
-            meshes: geometry.trees.iter().map(|mesh| MeshTree { bounds: mesh.bounds, ..MeshTree::default() }).collect(),
-            placed,
+            crowns,
+            first_triangles,
             nodes: gpu.upload_texels("bvh nodes", &nodes)?,
             triangles: gpu.upload_texels("bvh triangles", &corners(geometry))?,
             slots: (0..geometry.frames_in_flight).map(slot).collect::<Result<_, TraceError>>()?,
-            top_nodes,
+            most_entries,
             top: TopLevel::default(),
             updates: Slots::new(geometry.frames_in_flight),
         })
     }
 
-    /// Fills the slot's staging buffer: root, instances, nodes of the top level.
+    /// Fills the slot's staging buffer.
     fn write(&mut self, slot: usize, instances: &[Instance]) {
-        self.top.rebuild(instances, &self.meshes);
-        let first_node = (slot * self.top_nodes) as u32;
-        let device = &self.slots[slot].device;
-        let root = BvhRoot { instances: device.address() + ROOT_BYTES, root: moved(self.top.tree.root, first_node, 0), padding: 0 };
+        self.top.rebuild(instances, &self.crowns);
+        let first_entry = (2 * slot * self.most_entries) as u32;
+        let first_node = first_entry + self.most_entries as u32;
         let bytes = self.slots[slot].staging.mapped_mut().expect("host-visible memory is mapped");
-        let (head, rest) = bytes.split_at_mut(ROOT_BYTES as usize);
-        let (rows, nodes) = rest.split_at_mut(instances.len() * INSTANCE_BYTES as usize);
-        head.copy_from_slice(bytemuck::bytes_of(&root));
-        for (row, instance) in rows.chunks_exact_mut(INSTANCE_BYTES as usize).zip(instances) {
-            let mesh = self.placed[instance.mesh as usize];
-            row.copy_from_slice(bytemuck::bytes_of(&BvhInstance {
+        let (entries, rest) = bytes.split_at_mut(self.most_entries * NODE_BYTES);
+        let (nodes, root) = rest.split_at_mut(self.most_entries * NODE_BYTES);
+        for (row, part) in entries.chunks_exact_mut(NODE_BYTES).zip(&self.top.entries) {
+            let instance = &instances[part.instance as usize];
+            row.copy_from_slice(bytemuck::bytes_of(&BvhEntry {
                 world_to_object: instance.world_to_object,
-                root: mesh.root,
-                first_triangle: mesh.first_triangle,
+                root: part.root(),
+                first_triangle: self.first_triangles[instance.mesh as usize],
+                instance: part.instance,
                 flags: instance.flags,
-                padding: 0,
             }));
         }
-        for (bytes, node) in nodes.chunks_exact_mut(NODE_BYTES as usize).zip(&self.top.tree.nodes) {
-            bytes.copy_from_slice(bytemuck::bytes_of(&moved_node(node, first_node, 0)));
+        for (row, node) in nodes.chunks_exact_mut(NODE_BYTES).zip(&self.top.tree.nodes) {
+            row.copy_from_slice(bytemuck::bytes_of(&moved_node(node, first_node, first_entry)));
         }
+        let top = BvhRoot { root: moved(self.top.tree.root, first_node, first_entry) };
+        root[..size_of::<BvhRoot>()].copy_from_slice(bytemuck::bytes_of(&top));
     }
 }
 
@@ -111,22 +103,23 @@ impl Structure for Bvh {
             return;
         }
         self.write(slot, instances);
-        let Slot { staging, device } = &self.slots[slot];
-        let top_nodes = vk::BufferCopy {
-            src_offset: device.size(),
-            dst_offset: (slot * self.top_nodes) as u64 * NODE_BYTES,
-            size: self.top.tree.nodes.len() as u64 * NODE_BYTES,
-        };
-        commands.copy_buffer(staging, device, device.size());
-        if top_nodes.size > 0 {
-            // SAFETY: both ranges are inside their buffers. The slot's last frame is done, so nothing reads what is overwritten.
-            unsafe { self.gpu.raw().cmd_copy_buffer(commands.raw(), staging.raw(), self.nodes.buffer().raw(), &[top_nodes]) };
+        let Slot { staging, root } = &self.slots[slot];
+        let size = ((self.most_entries + self.top.tree.nodes.len()) * NODE_BYTES) as u64;
+        let slot_bytes = (2 * self.most_entries * NODE_BYTES) as u64;
+        let nodes = vk::BufferCopy { src_offset: 0, dst_offset: slot as u64 * slot_bytes, size };
+        let top = vk::BufferCopy { src_offset: slot_bytes, dst_offset: 0, size: root.size() };
+        // SAFETY: all ranges are inside their buffers. The slot's last frame is done, so nothing reads what is overwritten.
+        unsafe {
+            if size > 0 {
+                self.gpu.raw().cmd_copy_buffer(commands.raw(), staging.raw(), self.nodes.buffer().raw(), &[nodes]);
+            }
+            self.gpu.raw().cmd_copy_buffer(commands.raw(), staging.raw(), root.raw(), &[top]);
         }
         commands.barrier(vk::PipelineStageFlags::TRANSFER, vk::PipelineStageFlags::COMPUTE_SHADER);
     }
 
     fn root(&self, slot: usize) -> u64 {
-        self.slots[slot].device.address()
+        self.slots[slot].root.address()
     }
 
     fn bind(&self, _slot: usize, set: &DescriptorSet) {
@@ -135,39 +128,36 @@ impl Structure for Bvh {
     }
 
     fn memory_bytes(&self) -> u64 {
-        self.nodes.buffer().size()
-            + self.triangles.buffer().size()
-            + self.slots.iter().map(|slot| slot.device.size() + slot.staging.size()).sum::<u64>()
+        let slots = self.slots.iter().map(|slot| slot.root.size() + slot.staging.size());
+        self.nodes.buffer().size() + self.triangles.buffer().size() + slots.sum::<u64>()
     }
 }
 
-/// The nodes of all meshes in one array, behind room for `reserved` others.
-fn join_meshes(geometry: &Geometry, reserved: usize) -> (Vec<BvhNode>, Vec<PlacedMesh>) {
+/// The nodes of all meshes in one array, behind room for `reserved` others; each mesh's crown and first triangle.
+fn join_meshes(geometry: &Geometry, reserved: usize) -> (Vec<BvhNode>, Vec<Crown>, Vec<u32>) {
     let total: usize = geometry.trees.iter().map(|mesh| mesh.tree.nodes.len()).sum();
     let mut nodes = Vec::with_capacity(reserved + total);
     nodes.resize(reserved, BvhNode::default());
-    let mut first_triangle = 0;
-    let mut place = |(mesh, count): (&MeshTree, usize)| {
+    let (mut crowns, mut first_triangles, mut first_triangle) = (Vec::new(), Vec::new(), 0);
+    for (tree, mesh) in geometry.trees.iter().zip(&geometry.scene.meshes) {
         let first_node = nodes.len() as u32;
-        nodes.extend(mesh.tree.nodes.iter().map(|node| moved_node(node, first_node, first_triangle)));
-        let placed = PlacedMesh { root: moved(mesh.tree.root, first_node, first_triangle), first_triangle };
-        first_triangle += count as u32;
-        placed
-    };
-    let counts = geometry.scene.meshes.iter().map(|mesh| mesh.triangles.len());
-    let placed = geometry.trees.iter().zip(counts).map(&mut place).collect();
-    (nodes, placed)
+        nodes.extend(tree.tree.nodes.iter().map(|node| moved_node(node, first_node, first_triangle)));
+        crowns.push(Crown::new(tree, |child| moved(child, first_node, first_triangle)));
+        first_triangles.push(first_triangle);
+        first_triangle += mesh.triangles.len() as u32;
+    }
+    (nodes, crowns, first_triangles)
 }
 
-fn moved_node(node: &BvhNode, nodes: u32, triangles: u32) -> BvhNode {
-    BvhNode { child0: moved(node.child0, nodes, triangles), child1: moved(node.child1, nodes, triangles), ..*node }
+fn moved_node(node: &BvhNode, nodes: u32, leaves: u32) -> BvhNode {
+    BvhNode { child0: moved(node.child0, nodes, leaves), child1: moved(node.child1, nodes, leaves), ..*node }
 }
 
-/// A child of a tree whose nodes, and whose triangles, lie this far behind others'.
-fn moved(child: u32, nodes: u32, triangles: u32) -> u32 {
+/// A child of a tree whose nodes, and what its leaves name, lie this far behind others'.
+fn moved(child: u32, nodes: u32, leaves: u32) -> u32 {
     match child {
         BVH_EMPTY => BVH_EMPTY,
-        leaf if leaf & BVH_LEAF != 0 => leaf + triangles,
+        leaf if leaf & BVH_LEAF != 0 => leaf + leaves,
         node => node + nodes,
     }
 }

@@ -1,4 +1,4 @@
-// A binary tree over instances, whose leaves are binary trees over triangles (src/accel/bvh.rs builds both), in one loop.
+// A binary tree over instances, or parts of them, whose leaves are binary trees over triangles (src/accel/bvh.rs builds both), in one loop.
 //
 // Nodes hold their children's bounds; the nearer child is visited first, the other one goes onto a stack. A ray that enters an
 // instance goes on in mesh space, with distances unchanged since its direction is not normalized again, until the stack is back at
@@ -16,12 +16,11 @@
 #include "shared/bindings.glsl"
 #include "shared/bvh.glsl"
 
-/// BvhNode[], four texels each; corners of triangles in mesh space, three texels each, metres.
+/// BvhNode or BvhEntry, four texels each; corners of triangles in mesh space, three texels each, metres.
 layout(set = 0, binding = 3) uniform usamplerBuffer bvh_nodes;
 layout(set = 0, binding = 4) uniform usamplerBuffer bvh_triangles;
 
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer BvhInstanceBuffer { BvhInstance at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer BvhRootBuffer { BvhRoot root; };
+layout(buffer_reference, scalar) readonly buffer BvhRootBuffer { BvhRoot root; };
 
 BvhNode fetch_node(uint index) {
     int texel = int(4 * index);
@@ -31,6 +30,17 @@ BvhNode fetch_node(uint index) {
     uvec4 d = texelFetch(bvh_nodes, texel + 3);
     return BvhNode(
         uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w, uintBitsToFloat(d.xyz), d.w);
+}
+
+BvhEntry fetch_entry(uint index) {
+    int texel = int(4 * index);
+    uvec4 d = texelFetch(bvh_nodes, texel + 3);
+    return BvhEntry(
+        vec4[3](
+            uintBitsToFloat(texelFetch(bvh_nodes, texel)),
+            uintBitsToFloat(texelFetch(bvh_nodes, texel + 1)),
+            uintBitsToFloat(texelFetch(bvh_nodes, texel + 2))),
+        d.x, d.y, d.z, d.w);
 }
 
 vec3 fetch_corner(uint index) {
@@ -72,15 +82,12 @@ bool intersect_triangle(LocalRay ray, vec3 p0, vec3 p1, vec3 p2, float t_min, fl
 }
 
 bool accel_trace(Ray ray, bool any_hit, uint alpha_seed, out Hit hit) {
-    BvhRoot root = BvhRootBuffer(frame.accel).root;
-    BvhInstanceBuffer instances = BvhInstanceBuffer(root.instances);
-
     uint stack[BVH_TOP_DEPTH + BVH_MESH_DEPTH];
     uint height = 0;
     uint base = IN_TOP_LEVEL;
     LocalRay local = world_ray(ray);
     uint instance = 0, first_triangle = 0, flags = 0;
-    uint current = root.root;
+    uint current = BvhRootBuffer(frame.accel).root.root;
     bool found = false;
     hit.t = ray.t_max;
 
@@ -98,11 +105,12 @@ bool accel_trace(Ray ray, bool any_hit, uint alpha_seed, out Hit hit) {
                 continue;
             }
         } else if (base == IN_TOP_LEVEL) {
-            instance = current & ~BVH_LEAF;
-            local = mesh_ray(ray, instances.at[instance].world_to_object);
-            first_triangle = instances.at[instance].first_triangle;
-            flags = instances.at[instance].flags;
-            current = instances.at[instance].root;
+            BvhEntry entry = fetch_entry(current & ~BVH_LEAF);
+            local = mesh_ray(ray, entry.world_to_object);
+            instance = entry.instance;
+            first_triangle = entry.first_triangle;
+            flags = entry.flags;
+            current = entry.root;
             base = height;
             continue;
         } else {
