@@ -14,7 +14,7 @@ void write_pixel(uvec2 pixel, Terms terms, uvec2 counts) {
     vec3 mean = terms.before / float(SAMPLES);
     bool finite = !any(isnan(mean)) && !any(isinf(mean));
     imageStore(radiance, ivec2(pixel), vec4(finite ? mean : vec3(0.0), finite ? 1.0 : 0.0));
-    imageStore(ray_count, ivec2(pixel), uvec4(counts.x | counts.y << 16));
+    imageStore(ray_count, ivec2(pixel), uvec4(pack_counts(counts)));
 }
 
 void main() {

@@ -27,7 +27,7 @@ void write_pixel(uvec2 at, Terms terms, uvec2 counts) {
     imageStore(diffuse_indirect, pixel, finite_or_black(terms.diffuse_indirect));
     imageStore(specular_direct, pixel, finite_or_black(terms.specular_direct));
     imageStore(specular_indirect, pixel, finite_or_black(terms.specular_indirect));
-    imageStore(ray_count, pixel, uvec4(counts.x | counts.y << 16));
+    imageStore(ray_count, pixel, uvec4(pack_counts(counts)));
 }
 
 void main() {

@@ -253,6 +253,12 @@ bool find_pixel(uint group, uint thread, inout uint turn, out uvec2 pixel) {
     return false;
 }
 
+/// Scattered rays in the low, shadow rays in the high 16 bits.
+uint pack_counts(uvec2 counts) {
+    uvec2 most = min(counts, 0xffffu);
+    return most.x | most.y << 16;
+}
+
 /// Takes a pixel's result; `counts`: its scattered rays and shadow rays. Defined by the kernel.
 void write_pixel(uvec2 pixel, Terms terms, uvec2 counts);
 

@@ -48,10 +48,4 @@ void add_term(inout Terms terms, uint term, float diffuse_weight, vec3 specular_
     terms.before += (terms.attenuation * diffuse_weight + specular_weight) * radiance;
 }
 
-/// What a picture shows, where the terms are separate; else `before` holds it already.
-vec3 recombine(Terms terms) {
-    return terms.before + terms.attenuation * (terms.diffuse_direct + terms.diffuse_indirect) + terms.specular_direct
-        + terms.specular_indirect;
-}
-
 #endif

@@ -2,6 +2,7 @@
 //! tests and measurements take them.
 
 pub mod parameters;
+mod prepared;
 mod reference;
 mod renderer;
 mod settings;

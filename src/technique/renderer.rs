@@ -1,22 +1,15 @@
 //! One scene, one technique, one device: frame after frame.
 
 use super::PassOptions;
+use super::prepared::PreparedScene;
 use super::settings::{RenderError, Settings};
-use super::timings::{BuildTimes, MemoryUse, RayCounts, Recorder, Timings};
-use crate::accel::{self, Structure};
+use super::timings::{Clock, MemoryUse, RayCounts, Recorder, Timings};
 use crate::display;
 use crate::frame::{FrameBuilder, FrameGraph, Globals, GlobalsInfo, ImageHandle};
-use crate::gpu::{Buffer, DescriptorSet, FrameRing, Gpu, Image, Timer, vk};
-use crate::paths::{energy, gbuffer};
+use crate::gpu::{DescriptorSet, FrameRing, Gpu, Image, Timer, vk};
+use crate::paths::gbuffer;
 use crate::scene::Scene;
-use crate::scene::effects::{Effect, EffectSet};
-use crate::scene::merge::merge_static;
-use crate::scene::placed::PlacedScene;
-use crate::scene::pose::Pose;
-use crate::scene::transform::world_transforms;
-use crate::scene::upload::SceneBuffers;
 use crate::shared::{self, FrameData};
-use std::time::Instant;
 
 /// Frames that the host may be ahead of the device.
 const FRAMES_IN_FLIGHT: usize = 2;
@@ -28,96 +21,50 @@ pub struct Renderer {
     graph: FrameGraph,
     picture: ImageHandle,
     globals: Globals,
-    structure: Box<dyn Structure>,
-    placed: PlacedScene,
-    buffers: SceneBuffers,
-    energy_tables: Option<Buffer>,
-    pose: Pose,
-    scene: Scene,
+    prepared: PreparedScene,
     settings: Settings,
     parameters: shared::Parameters,
-    trace: &'static str,
     recorder: Recorder,
-    build_ms: BuildTimes,
-    memory: MemoryUse,
     frame: u32,
     gpu: Gpu,
 }
 
 impl Renderer {
-    /// Orders the scene's triangles and instances, uploads it, builds its acceleration structure and compiles the passes.
+    /// Prepares the scene and compiles the technique's passes.
     ///
     /// # Errors
     /// An unknown camera, structure or output; more samples than the technique takes; what the device refuses.
-    pub fn new(gpu: &Gpu, mut scene: Scene, settings: Settings) -> Result<Self, RenderError> {
+    pub fn new(gpu: &Gpu, scene: Scene, settings: Settings) -> Result<Self, RenderError> {
         let technique = settings.technique;
         if settings.spp > technique.max_spp {
             return Err(RenderError::TooManySamples { technique: technique.name, most: technique.max_spp, asked: settings.spp });
         }
-        let choice = accel::choose(&settings.trace, gpu.capabilities())?;
-        tracing::info!("rays are traced by {}: {}", choice.entry.name, choice.reason);
-        let (mut clock, mut build_ms, mut memory) = (Clock::start(), BuildTimes::default(), MemoryUse::default());
-        let effects = if settings.all_effects { EffectSet::all() } else { EffectSet::derive(&scene) };
-        if settings.merge_static {
-            merge_static(&mut scene);
-        }
-        let trees = accel::order_scene(&mut scene);
-        build_ms.order = clock.lap();
-
-        let before = gpu.allocated_bytes();
-        let buffers = SceneBuffers::new(gpu, &scene)?;
-        let placed = PlacedScene::new(gpu, &scene, FRAMES_IN_FLIGHT)?;
-        let refraction = effects.contains(Effect::RoughTransmission);
-        let energy_tables = if refraction || effects.contains(Effect::Glossy) || effects.contains(Effect::Clearcoat) {
-            Some(gpu.upload("energy tables", &energy::energy_tables(refraction), vk::BufferUsageFlags::empty())?)
-        } else {
-            None
-        };
-        let world = world_transforms(&scene.nodes, &scene.animation.sample(&scene.nodes, 0.0));
-        let pose = Pose::new(&scene, settings.view.at(&scene, &world)?, placed.lights().first_lights());
-        build_ms.upload = clock.lap();
-        memory.textures = buffers.texture_bytes();
-        memory.scene = gpu.allocated_bytes() - before - memory.textures;
-
-        let geometry = accel::Geometry { scene: &scene, meshes: &buffers.meshes, trees: &trees, frames_in_flight: FRAMES_IN_FLIGHT };
-        let structure = (choice.entry.build)(gpu, &geometry)?;
-        build_ms.structure = clock.lap();
-        memory.structure = structure.memory_bytes();
-
-        let before = gpu.allocated_bytes();
-        let bind_structure = |slot: usize, set: &DescriptorSet| structure.bind(slot, set);
-        let info = GlobalsInfo { textures: &buffers.textures, bind_structure: &bind_structure, frames_in_flight: FRAMES_IN_FLIGHT };
+        let mut prepared = PreparedScene::new(gpu, scene, &settings, FRAMES_IN_FLIGHT)?;
+        let (mut clock, before) = (Clock::start(), gpu.allocated_bytes());
+        let bind_structure = |slot: usize, set: &DescriptorSet| prepared.structure.bind(slot, set);
+        let textures = &prepared.buffers.textures;
+        let info = GlobalsInfo { textures, bind_structure: &bind_structure, frames_in_flight: FRAMES_IN_FLIGHT };
         let globals = Globals::new(gpu, &info)?;
-        let constants = [effects.specialization(), settings.parameters.constants()].concat();
-        let mut frame = FrameBuilder::new(gpu, &globals, choice.entry.stem, constants, settings.extent);
+        let constants = [prepared.effects.specialization(), settings.parameters.constants()].concat();
+        let mut frame = FrameBuilder::new(gpu, &globals, prepared.entry.stem, constants, settings.extent);
         let gbuffer = settings.outputs.iter().any(|name| gbuffer::OUTPUTS.contains(&name.as_str()));
         let picture = (technique.passes)(&mut frame, PassOptions { spp: settings.spp, gbuffer })?;
         let graph = frame.build();
         check_outputs(&settings, &graph)?;
-        build_ms.pipelines = clock.lap();
-        memory.images = gpu.allocated_bytes() - before;
-        memory.triangles = scene.instances.iter().map(|instance| scene.meshes[instance.mesh as usize].triangles.len() as u64).sum();
-
+        prepared.build_ms.pipelines = clock.lap();
+        prepared.memory.images = gpu.allocated_bytes() - before;
         Ok(Self {
             ring: FrameRing::new(gpu, FRAMES_IN_FLIGHT)?,
             timers: (0..FRAMES_IN_FLIGHT).map(|_| Timer::new(gpu, graph.marks())).collect::<Result<_, _>>()?,
             recorder: Recorder::new(graph.pass_names().collect()),
             parameters: settings.parameters.fields(),
-            trace: choice.entry.name,
             frame: 0,
             gpu: gpu.clone(),
             graph,
             picture,
             globals,
-            structure,
-            placed,
-            buffers,
-            energy_tables,
-            pose,
-            scene,
+            prepared,
             settings,
-            build_ms,
-            memory,
         })
     }
 
@@ -128,19 +75,20 @@ impl Renderer {
     pub fn render_frame(&mut self) -> Result<(), RenderError> {
         let slot = self.ring.acquire()?;
         self.collect(slot);
-        let start = Instant::now();
+        let mut clock = Clock::start();
         if self.frame > 0 && self.moves() {
             self.advance_pose()?;
         }
-        self.placed.write(slot, &self.scene, &self.pose);
+        let PreparedScene { placed, pose, scene, .. } = &mut self.prepared;
+        placed.write(slot, scene, pose);
         self.globals.write(slot, &self.frame_data(slot), &self.parameters);
-        let (structure, instances, graph, set) = (&mut self.structure, self.pose.instances(), &self.graph, self.globals.set(slot));
-        let timer = &mut self.timers[slot];
+        let PreparedScene { structure, pose, .. } = &mut self.prepared;
+        let (instances, graph, set, timer) = (pose.instances(), &self.graph, self.globals.set(slot), &mut self.timers[slot]);
         self.ring.submit(slot, |commands| {
             structure.update(commands, slot, instances);
             graph.record(commands, set, timer);
         })?;
-        self.recorder.add_cpu(milliseconds(start));
+        self.recorder.add_cpu(clock.lap());
         self.frame += 1;
         Ok(())
     }
@@ -186,42 +134,36 @@ impl Renderer {
     /// The device is lost.
     pub fn timings(&mut self) -> Result<Timings, RenderError> {
         self.finish()?;
-        let mut timings = self.recorder.report(self.gpu.capabilities(), self.trace);
-        timings.build_ms = self.build_ms;
+        let mut timings = self.recorder.report(self.gpu.capabilities(), self.prepared.entry.name);
+        timings.build_ms = self.prepared.build_ms;
         timings.rays = self.count_rays(timings.frame_ms_median)?;
-        timings.memory_bytes = MemoryUse { total: self.gpu.allocated_bytes(), ..self.memory }.per_triangle();
+        timings.memory_bytes = MemoryUse { total: self.gpu.allocated_bytes(), ..self.prepared.memory }.per_triangle();
         Ok(timings)
     }
 
-    /// Something is at another place in the next frame.
+    /// Something is at another place in the next frame. Frames that become one picture all show time 0.
     fn moves(&self) -> bool {
-        // After the animation's first frame the last frame's transforms still have to follow.
-        !self.scene.animation.is_empty()
+        !self.settings.technique.accumulates && !self.prepared.scene.animation.is_empty()
     }
 
     fn advance_pose(&mut self) -> Result<(), RenderError> {
         let time = f64::from(self.frame) / f64::from(self.settings.fps);
-        let (view, scene) = (&self.settings.view, &self.scene);
-        Ok(self.pose.advance(scene, time, |world| view.at(scene, world))?)
+        let PreparedScene { pose, scene, .. } = &mut self.prepared;
+        Ok(pose.advance(scene, time, |world| self.settings.view.at(scene, world))?)
     }
 
     fn frame_data(&self, slot: usize) -> FrameData {
-        let [camera, previous_camera] = self.pose.cameras(self.settings.extent);
+        let [camera, previous_camera] = self.prepared.pose.cameras(self.settings.extent);
         let mut data = FrameData {
-            meshes: self.buffers.mesh_buffer.address(),
-            materials: self.buffers.material_buffer.address(),
-            accel: self.structure.root(slot),
-            energy_tables: self.energy_tables.as_ref().map_or(0, Buffer::address),
             frame: self.frame,
             camera,
             previous_camera,
             extent: self.settings.extent,
             seed: self.settings.seed,
             first_sample: self.frame.wrapping_mul(self.settings.spp),
-            scene_radius: self.pose.radius() as f32,
             ..Default::default()
         };
-        self.placed.describe(slot, &mut data);
+        self.prepared.describe(slot, &mut data);
         data
     }
 
@@ -259,23 +201,4 @@ fn check_outputs(settings: &Settings, graph: &FrameGraph) -> Result<(), RenderEr
     known.sort_unstable();
     known.dedup();
     Err(RenderError::UnknownOutput { technique: settings.technique.name, name: name.clone(), known: known.join(", ") })
-}
-
-fn milliseconds(since: Instant) -> f64 {
-    since.elapsed().as_secs_f64() * 1e3
-}
-
-/// Milliseconds between laps.
-struct Clock(Instant);
-
-impl Clock {
-    fn start() -> Self {
-        Self(Instant::now())
-    }
-
-    fn lap(&mut self) -> f64 {
-        let lap = milliseconds(self.0);
-        self.0 = Instant::now();
-        lap
-    }
 }

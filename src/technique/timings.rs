@@ -3,6 +3,7 @@
 use crate::gpu::Capabilities;
 use crate::metrics::statistics::quantile;
 use serde::Serialize;
+use std::time::Instant;
 
 /// Gathers figures frame by frame.
 #[derive(Debug, Default)]
@@ -121,6 +122,20 @@ impl Recorder {
             rays: RayCounts::default(),
             memory_bytes: MemoryUse::default(),
         }
+    }
+}
+
+/// Milliseconds between laps.
+pub(super) struct Clock(Instant);
+
+impl Clock {
+    pub fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    pub fn lap(&mut self) -> f64 {
+        let before = std::mem::replace(&mut self.0, Instant::now());
+        (self.0 - before).as_secs_f64() * 1e3
     }
 }
 

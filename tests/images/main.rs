@@ -5,5 +5,6 @@ mod common;
 
 mod agreement;
 mod exact;
+mod motion;
 mod terms;
 mod worlds;
