@@ -4,7 +4,9 @@
 mod common;
 
 mod agreement;
+mod budgets;
 mod exact;
 mod motion;
 mod terms;
+mod textures;
 mod worlds;
