@@ -3,7 +3,7 @@
 f = mix(dielectric, metal, metallic)                                                      B.2
 dielectric = (1 - w F_d) base / pi + w F_d D V,  F_d = f0 + (1 - f0) (1 - |v.h|)^5        B.2.3, KHR_materials_ior and _specular
 metal = (base + (1 - base) (1 - |v.h|)^5) D V                                             B.2.2
-D is GGX (B.3.2) with alpha = roughness^2; V is Smith's height-correlated visibility, G / (4 n.l n.v) (B.3.3).
+D is GGX with alpha = roughness^2; V = G / (4 n.l n.v), where G is Smith's separable masking-shadowing, G1(n.l) G1(n.v)   B.3.2
 Single scattering: no energy is returned to rough metals. Below DELTA_ALPHA the specular lobe is a delta.
 """
 
@@ -56,8 +56,9 @@ class GltfBSDF(mi.BSDF):
         alpha2 = alpha * alpha
         cos_h = mi.Frame3f.cos_theta(half)
         distribution = alpha2 * dr.inv_pi / dr.square(cos_h * cos_h * (alpha2 - 1) + 1)
-        smith = lambda a, b: a * dr.sqrt(alpha2 + (1 - alpha2) * b * b)
-        visibility = 0.5 / (smith(cos_i, cos_o) + smith(cos_o, cos_i))
+        # 2 cos / masking is G1.
+        masking = lambda cosine: cosine + dr.sqrt(alpha2 + (1 - alpha2) * cosine * cosine)
+        visibility = 1 / (masking(cos_i) * masking(cos_o))
         return (diffuse + tint * distribution * visibility) * cos_o
 
     def specular_probability(self, metallic):
