@@ -1,5 +1,9 @@
 //! The program as its user meets it: exit codes, messages, files, what goes to stdout.
 
+#[path = "../common/glb.rs"]
+mod glb;
+
+mod bad_scenes;
 mod diff;
 mod inspect;
 mod readme;

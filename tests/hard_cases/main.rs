@@ -8,5 +8,6 @@ mod glb;
 mod accel_extremes;
 mod accel_ray_offset;
 mod accel_watertight;
+mod cli_no_ray_query;
 mod scene_bad_input;
 mod scene_malformed;
