@@ -24,6 +24,7 @@ layout(buffer_reference, scalar) readonly buffer Vec2Buffer { vec2 at[]; };
 layout(buffer_reference, scalar) readonly buffer Vec3Buffer { vec3 at[]; };
 layout(buffer_reference, scalar) readonly buffer Vec4Buffer { vec4 at[]; };
 layout(buffer_reference, scalar) readonly buffer Uvec2Buffer { uvec2 at[]; };
+layout(buffer_reference, scalar) readonly buffer Uvec4Buffer { uvec4 at[]; };
 layout(buffer_reference, scalar) readonly buffer Uvec3Buffer { uvec3 at[]; };
 
 #endif

@@ -43,8 +43,12 @@ struct BvhEntry {
 
 /// What FrameData.accel points at.
 struct BvhRoot {
+    /// Nodes and triangles once more, for devices that take fewer texels.
+    Address nodes;
+    Address triangles;
     /// The top level's root, as a child.
     uint root;
+    uint padding;
 };
 
 #endif

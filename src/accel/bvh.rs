@@ -22,6 +22,9 @@ pub const ENTRY: Entry = Entry {
 const NODE_BYTES: usize = size_of::<BvhNode>();
 const _: () = assert!(size_of::<BvhEntry>() == NODE_BYTES);
 
+/// Specialization constant BVH_AS_TEXELS.
+const AS_TEXELS: u32 = 210;
+
 struct Bvh {
     gpu: Gpu,
     /// Of each mesh, as placed in the array of all nodes.
@@ -92,7 +95,12 @@ impl Bvh {
         for (row, node) in nodes.chunks_exact_mut(NODE_BYTES).zip(&self.top.tree.nodes) {
             row.copy_from_slice(bytemuck::bytes_of(&moved_node(node, first_node, first_entry)));
         }
-        let top = BvhRoot { root: moved(self.top.tree.root, first_node, first_entry) };
+        let top = BvhRoot {
+            nodes: self.nodes.buffer().address(),
+            triangles: self.triangles.buffer().address(),
+            root: moved(self.top.tree.root, first_node, first_entry),
+            padding: 0,
+        };
         root[..size_of::<BvhRoot>()].copy_from_slice(bytemuck::bytes_of(&top));
     }
 }
@@ -125,6 +133,11 @@ impl Structure for Bvh {
     fn bind(&self, _slot: usize, set: &DescriptorSet) {
         set.write_texel_buffer(STRUCTURE_TEXELS[0], &self.nodes);
         set.write_texel_buffer(STRUCTURE_TEXELS[1], &self.triangles);
+    }
+
+    fn constants(&self) -> Vec<(u32, u32)> {
+        let texels = [&self.nodes, &self.triangles].iter().all(|buffer| buffer.view().is_some());
+        vec![(AS_TEXELS, texels.into())]
     }
 
     fn memory_bytes(&self) -> u64 {

@@ -51,6 +51,11 @@ pub trait Structure: Send {
     /// [`crate::frame::STRUCTURE_TEXELS`]).
     fn bind(&self, slot: usize, set: &DescriptorSet);
 
+    /// Specialization constants of its shader half: id and word.
+    fn constants(&self) -> Vec<(u32, u32)> {
+        Vec::new()
+    }
+
     /// Bytes on the device, both levels.
     fn memory_bytes(&self) -> u64;
 }

@@ -122,25 +122,21 @@ impl Buffer {
 /// struct word by word.
 pub struct TexelBuffer {
     buffer: Buffer,
-    view: vk::BufferView,
+    view: Option<vk::BufferView>,
 }
 
 impl Gpu {
-    /// A device-local texel buffer with these contents; its texels are `[u32; 4]`.
-    ///
-    /// # Errors
-    /// More texels than the device takes.
+    /// A device-local texel buffer with these contents; its texels are `[u32; 4]`. Where there are more of them than the device takes, it
+    /// can be read by address only.
     pub fn upload_texels<T: Pod>(&self, name: &str, data: &[T]) -> Result<TexelBuffer, GpuError> {
-        let (texels, most) = (size_of_val(data) as u64 / 16, u64::from(self.capabilities().max_texels));
-        if texels > most {
-            let missing = format!("room for {texels} texels of '{name}' (it takes at most {most})");
-            return Err(GpuError::MissingFeatures { device: self.capabilities().name.clone(), missing });
-        }
         let buffer = self.upload(name, data, vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER)?;
+        if size_of_val(data) / 16 > self.capabilities().max_texels as usize {
+            return Ok(TexelBuffer { buffer, view: None });
+        }
         let info = vk::BufferViewCreateInfo::default().buffer(buffer.raw()).format(vk::Format::R32G32B32A32_UINT).range(vk::WHOLE_SIZE);
         // SAFETY: the buffer was created for texels; drop destroys the view before it.
         let view = unsafe { self.raw().create_buffer_view(&info, None) }.context(&format!("view texels of '{name}'"))?;
-        Ok(TexelBuffer { buffer, view })
+        Ok(TexelBuffer { buffer, view: Some(view) })
     }
 }
 
@@ -149,15 +145,18 @@ impl TexelBuffer {
         &self.buffer
     }
 
-    pub fn view(&self) -> vk::BufferView {
+    /// None where the device takes fewer texels.
+    pub fn view(&self) -> Option<vk::BufferView> {
         self.view
     }
 }
 
 impl Drop for TexelBuffer {
     fn drop(&mut self) {
-        // SAFETY: the owner has seen to it that the device no longer uses the view.
-        unsafe { self.buffer.gpu.raw().destroy_buffer_view(self.view, None) };
+        if let Some(view) = self.view {
+            // SAFETY: the owner has seen to it that the device no longer uses the view.
+            unsafe { self.buffer.gpu.raw().destroy_buffer_view(view, None) };
+        }
     }
 }
 

@@ -123,8 +123,10 @@ impl DescriptorSet {
         }
     }
 
+    /// Writes nothing where the device cannot take the buffer as texels.
     pub fn write_texel_buffer(&self, binding: u32, texels: &TexelBuffer) {
-        let views = [texels.view()];
+        let Some(view) = texels.view() else { return };
+        let views = [view];
         let write = vk::WriteDescriptorSet::default().dst_binding(binding).descriptor_type(vk::DescriptorType::UNIFORM_TEXEL_BUFFER);
         self.write(write.texel_buffer_view(&views));
     }

@@ -45,7 +45,7 @@ impl Renderer {
         let textures = &prepared.buffers.textures;
         let info = GlobalsInfo { textures, bind_structure: &bind_structure, frames_in_flight: FRAMES_IN_FLIGHT };
         let globals = Globals::new(gpu, &info)?;
-        let constants = [prepared.effects.specialization(), settings.parameters.constants()].concat();
+        let constants = [prepared.effects.specialization(), settings.parameters.constants(), prepared.structure.constants()].concat();
         let mut frame = FrameBuilder::new(gpu, &globals, prepared.entry.stem, constants, settings.extent);
         let gbuffer = settings.outputs.iter().any(|name| gbuffer::OUTPUTS.contains(&name.as_str()));
         let picture = (technique.passes)(&mut frame, PassOptions { spp: settings.spp, gbuffer })?;

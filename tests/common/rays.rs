@@ -90,7 +90,7 @@ impl<'a> Traced<'a> {
         let bind = |set: &DescriptorSet| structure.bind(self.slot, set);
         let options = KernelOptions {
             defines: shader_compiler::structure_defines(stem),
-            constants: constants.to_vec(),
+            constants: with_defaults(constants, structure.constants()),
             frame: self.frame(&instances, structure.root(self.slot)),
             bind_structure: Some(&bind),
             ..Default::default()
@@ -289,4 +289,10 @@ fn intersect(ray: &Ray, corners: &[DVec3; 3]) -> Option<ExactHit> {
     let t = a.dot(normal) / direction.dot(normal);
     let cosine = (direction.dot(normal) / normal.length()).abs();
     t.is_finite().then_some(ExactHit { t, instance: 0, primitive: 0, barycentrics, cosine })
+}
+
+/// `constants`, and those of `defaults` that they leave open.
+fn with_defaults(constants: &[(u32, u32)], defaults: Vec<(u32, u32)>) -> Vec<(u32, u32)> {
+    let open = defaults.into_iter().filter(|(id, _)| constants.iter().all(|(given, _)| given != id));
+    constants.iter().copied().chain(open).collect()
 }

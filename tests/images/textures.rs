@@ -10,7 +10,7 @@ use pathspace::technique::ViewChoice;
 
 /// A floor of 80 m whose 8x8 chequers repeat every 20 cm, under an even sky.
 fn chequered_floor() -> Scene {
-    let texel = |i: u32| if (i % 8 + i / 8) % 2 == 0 { [255, 255, 255, 255] } else { [0, 0, 0, 255] };
+    let texel = |i: u32| if (i % 8 + i / 8).is_multiple_of(2) { [255, 255, 255, 255] } else { [0, 0, 0, 255] };
     let pixels: Vec<u8> = (0..64).flat_map(texel).collect();
     let (half, repeats) = (40.0, 400.0);
     let floor = Mesh {

@@ -98,6 +98,17 @@ fn structures_give_the_same_hits_on_a_million_rays() {
     check_against_each_other(&gpu, "cornell", built_in("cornell"), 1 << 18);
 }
 
+/// Devices with few texels, such as SwiftShader, read nodes and triangles by address.
+#[test]
+fn a_tree_read_by_address_gives_the_hits_of_one_read_as_texels() {
+    const BVH_AS_TEXELS: u32 = 210;
+    let gpu = common::gpu();
+    let traced = Traced::new(&gpu, instanced());
+    let rays = random_rays(&mut Pcg32::seed_from_u64(13), Oracle::new(&traced).bounds(), 4096);
+    let by_address = [traced.alpha_constants(), vec![(BVH_AS_TEXELS, 0)]].concat();
+    assert_eq!(traced.trace("bvh", &rays, false, &by_address), traced.closest("bvh", &rays));
+}
+
 #[test]
 fn any_hit_says_what_closest_hit_says() {
     let gpu = common::gpu();

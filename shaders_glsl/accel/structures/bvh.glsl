@@ -22,29 +22,46 @@ layout(set = 0, binding = 4) uniform usamplerBuffer bvh_triangles;
 
 layout(buffer_reference, scalar) readonly buffer BvhRootBuffer { BvhRoot root; };
 
+/// Off where the device takes fewer texels than there are (SwiftShader: 65536); then they are read by address.
+layout(constant_id = 210) const bool BVH_AS_TEXELS = true;
+
+uvec4 fetch_node_texel(int texel) {
+    if (BVH_AS_TEXELS) {
+        return texelFetch(bvh_nodes, texel);
+    }
+    return Uvec4Buffer(BvhRootBuffer(frame.accel).root.nodes).at[texel];
+}
+
+uvec4 fetch_triangle_texel(int texel) {
+    if (BVH_AS_TEXELS) {
+        return texelFetch(bvh_triangles, texel);
+    }
+    return Uvec4Buffer(BvhRootBuffer(frame.accel).root.triangles).at[texel];
+}
+
 BvhNode fetch_node(uint index) {
     int texel = int(4 * index);
-    uvec4 a = texelFetch(bvh_nodes, texel);
-    uvec4 b = texelFetch(bvh_nodes, texel + 1);
-    uvec4 c = texelFetch(bvh_nodes, texel + 2);
-    uvec4 d = texelFetch(bvh_nodes, texel + 3);
+    uvec4 a = fetch_node_texel(texel);
+    uvec4 b = fetch_node_texel(texel + 1);
+    uvec4 c = fetch_node_texel(texel + 2);
+    uvec4 d = fetch_node_texel(texel + 3);
     return BvhNode(
         uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w, uintBitsToFloat(d.xyz), d.w);
 }
 
 BvhEntry fetch_entry(uint index) {
     int texel = int(4 * index);
-    uvec4 d = texelFetch(bvh_nodes, texel + 3);
+    uvec4 d = fetch_node_texel(texel + 3);
     return BvhEntry(
         vec4[3](
-            uintBitsToFloat(texelFetch(bvh_nodes, texel)),
-            uintBitsToFloat(texelFetch(bvh_nodes, texel + 1)),
-            uintBitsToFloat(texelFetch(bvh_nodes, texel + 2))),
+            uintBitsToFloat(fetch_node_texel(texel)),
+            uintBitsToFloat(fetch_node_texel(texel + 1)),
+            uintBitsToFloat(fetch_node_texel(texel + 2))),
         d.x, d.y, d.z, d.w);
 }
 
 vec3 fetch_corner(uint index) {
-    return uintBitsToFloat(texelFetch(bvh_triangles, int(index)).xyz);
+    return uintBitsToFloat(fetch_triangle_texel(int(index)).xyz);
 }
 
 /// Height of the stack at which an instance is left, for a ray that is in none.

@@ -72,8 +72,11 @@ impl Textures {
         for (i, request) in self.requests.iter().enumerate() {
             users.entry(request.image).or_default().push(i);
         }
-        let images: Vec<_> = users.into_iter().collect();
-        let sources: Vec<_> = images.par_iter().map(|(image, _)| source(root, buffers, base_dir, *image)).collect::<Result<_, _>>()?;
+        let mut images: Vec<_> = users.into_iter().collect();
+        images.sort_by_key(|(image, _)| image.map(|image| image.value()));
+        let sources: Vec<_> = images.par_iter().map(|(image, _)| source(root, buffers, base_dir, *image)).collect();
+        // In the file's order, so that of several errors always the same one is told.
+        let sources: Vec<_> = sources.into_iter().collect::<Result<_, _>>()?;
         check_total(&sources)?;
         let decoded: Vec<_> =
             images.par_iter().zip(sources).map(|((image, users), source)| self.build(root, *image, users, source)).collect();
