@@ -51,7 +51,9 @@ struct Slot {
 impl Bvh {
     fn new(gpu: &Gpu, geometry: &Geometry) -> Result<Self, TraceError> {
         let triangles: usize = geometry.scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
-        let most_entries = most_entries(geometry.scene.instances.len());
+        let instances = &geometry.scene.instances;
+        let instanced_nodes = instances.iter().map(|instance| geometry.trees[instance.mesh as usize].tree.nodes.len()).sum();
+        let most_entries = most_entries(instances.len(), instanced_nodes);
         check_count(ENTRY.name, "triangles", triangles, BVH_FIRST_MASK as usize)?;
         check_count(ENTRY.name, "parts of instances", most_entries, 1 << BVH_TOP_DEPTH)?;
         let (nodes, crowns, first_triangles) = join_meshes(geometry, 2 * most_entries * geometry.frames_in_flight);

@@ -19,10 +19,10 @@ const ROUNDINGS: f64 = 16.0;
 const OPENINGS: usize = 512;
 const NEVER: u32 = u32::MAX;
 
-/// Most parts of this many instances.
-pub fn most_entries(instances: usize) -> usize {
+/// Most parts of this many instances, whose trees have `nodes` inner nodes in all: one more for each that is opened.
+pub fn most_entries(instances: usize, nodes: usize) -> usize {
     // A single instance overlaps nothing.
-    if instances > 1 { instances + OPENINGS } else { instances }
+    if instances > 1 { instances + nodes.min(OPENINGS) } else { instances }
 }
 
 /// A subtree of a mesh's tree.
@@ -104,7 +104,7 @@ impl TopLevel {
                 self.add(Entry { instance: index, part, margin: margin(instance, reach.into()) }, instance);
             }
         }
-        let most = most_entries(self.entries.len());
+        let most = most_entries(self.entries.len(), OPENINGS);
         while self.entries.len() < most
             && let Some((_, opened)) = self.largest.pop()
         {
@@ -189,7 +189,7 @@ mod tests {
         top.rebuild(&[placed(0.0, 0)], &crowns);
         assert_eq!(top.entries.len(), 1);
         top.rebuild(&[placed(0.0, 0), placed(5.0, 0), placed(7.0, 0)], &crowns);
-        assert_eq!(top.entries.len(), most_entries(3));
+        assert_eq!(top.entries.len(), most_entries(3, OPENINGS));
     }
 
     #[test]
