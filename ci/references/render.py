@@ -40,7 +40,7 @@ def render(scene, samples):
 
 
 def write(path, mean, variance):
-    """Half precision rounds by at most 2^-12 of the value: less than the error of the mean. A root spans less than a variance would."""
+    """Half precision rounds by at most 2^-11 of the value: less than the error of the mean. A root spans less than a variance would."""
     channels = np.concatenate([mean, np.sqrt(variance)], 2).astype(np.float16)
     assert np.isfinite(channels).all()
     names = ["R", "G", "B", "error.R", "error.G", "error.B"]

@@ -7,6 +7,8 @@ mod agreement;
 mod budgets;
 mod exact;
 mod motion;
+mod references;
+mod shared_scenes;
 mod terms;
 mod textures;
 mod worlds;
