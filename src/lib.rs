@@ -12,3 +12,4 @@ pub mod paths;
 pub mod display;
 pub mod technique;
 pub mod metrics;
+pub mod bench;

@@ -19,7 +19,11 @@ vec4 finite_or_black(vec3 value) {
     return vec4(finite ? value : vec3(0.0), finite ? 1.0 : 0.0);
 }
 
-void write_pixel(uvec2 at, Terms terms, uvec2 counts) {
+uint samples_of(uvec2 pixel) {
+    return 1u;
+}
+
+void write_pixel(uvec2 at, Terms terms, uint samples, uvec2 counts) {
     ivec2 pixel = ivec2(at);
     imageStore(before, pixel, finite_or_black(terms.before));
     imageStore(attenuation, pixel, finite_or_black(terms.attenuation));
@@ -31,5 +35,5 @@ void write_pixel(uvec2 at, Terms terms, uvec2 counts) {
 }
 
 void main() {
-    trace_pixels(gl_WorkGroupID.x, gl_LocalInvocationIndex, 1u);
+    trace_pixels(gl_WorkGroupID.x, gl_LocalInvocationIndex);
 }

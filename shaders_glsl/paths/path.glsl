@@ -259,15 +259,19 @@ uint pack_counts(uvec2 counts) {
     return most.x | most.y << 16;
 }
 
-/// Takes a pixel's result; `counts`: its scattered rays and shadow rays. Defined by the kernel.
-void write_pixel(uvec2 pixel, Terms terms, uvec2 counts);
+/// Paths of a pixel in this frame. Defined by the kernel.
+uint samples_of(uvec2 pixel);
 
-/// The paths of all pixels of a thread, `samples` of each, one after the other.
-void trace_pixels(uint group, uint thread, uint samples) {
+/// Takes a pixel's result, a sum over `samples`; `counts`: its scattered rays and shadow rays. Defined by the kernel.
+void write_pixel(uvec2 pixel, Terms terms, uint samples, uvec2 counts);
+
+/// The paths of all pixels of a thread, one after the other.
+void trace_pixels(uint group, uint thread) {
     uint turn = 0u;
     uint sampled = 0u;
     uvec2 pixel;
     bool paths_left = find_pixel(group, thread, turn, pixel);
+    uint samples = samples_of(pixel);
     Path path = path_begin(pixel, frame.first_sample);
     Terms terms = no_terms();
     Pending pending;
@@ -330,12 +334,13 @@ void trace_pixels(uint group, uint thread, uint samples) {
             sampled++;
             terms.attenuation = sampled < samples ? vec3(0.0) : terms.attenuation;
             if (sampled == samples) {
-                write_pixel(pixel, terms, counts);
+                write_pixel(pixel, terms, samples, counts);
                 terms = no_terms();
                 counts = uvec2(0u);
                 sampled = 0u;
                 turn++;
                 paths_left = find_pixel(group, thread, turn, pixel);
+                samples = samples_of(pixel);
             }
             path = path_begin(pixel, frame.first_sample + sampled);
             ended = false;

@@ -36,6 +36,14 @@ struct Pass {
     /// Workgroups.
     groups: [u32; 3],
     barrier: bool,
+    traffic: Traffic,
+}
+
+/// Bytes that a pass moves by its declaration: each value of each image once.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Traffic {
+    pub read: u64,
+    pub written: u64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,6 +92,14 @@ impl<'a> FrameBuilder<'a> {
 
     pub fn build(self) -> FrameGraph {
         FrameGraph { images: self.images, passes: self.passes }
+    }
+
+    fn traffic(&self, uses: &[(&str, ImageHandle, Access)]) -> Traffic {
+        uses.iter().fold(Traffic::default(), |sum, &(_, image, access)| {
+            let bytes = self.images[image.0].1.byte_size();
+            let counted = |counts: bool| if counts { bytes } else { 0 };
+            Traffic { read: sum.read + counted(access != Access::Write), written: sum.written + counted(access != Access::Read) }
+        })
     }
 
     /// Whether a pass with these uses must wait for the ones before it.
@@ -163,7 +179,8 @@ impl PassBuilder<'_, '_> {
         let label = CString::new(self.name).expect("pass names have no zeros");
         let [width, height] = frame.extent;
         let groups = self.groups.map_or_else(|| pipeline.groups([width, height, 1]), |count| [count, 1, 1]);
-        frame.passes.push(Pass { name: self.name, label, pipeline, set, groups, barrier });
+        let traffic = frame.traffic(&self.uses);
+        frame.passes.push(Pass { name: self.name, label, pipeline, set, groups, barrier, traffic });
         Ok(())
     }
 }
@@ -194,6 +211,11 @@ pub struct FrameGraph {
 impl FrameGraph {
     pub fn pass_names(&self) -> impl Iterator<Item = &'static str> {
         self.passes.iter().map(|pass| pass.name)
+    }
+
+    /// Of each pass.
+    pub fn traffic(&self) -> impl Iterator<Item = Traffic> {
+        self.passes.iter().map(|pass| pass.traffic)
     }
 
     /// Marks that [`Self::record`] makes on a timer.

@@ -4,4 +4,4 @@ mod globals;
 mod graph;
 
 pub use globals::{Globals, GlobalsInfo, STRUCTURE_TEXELS, TOP_LEVEL};
-pub use graph::{FrameBuilder, FrameGraph, ImageHandle, PassBuilder};
+pub use graph::{FrameBuilder, FrameGraph, ImageHandle, PassBuilder, Traffic};

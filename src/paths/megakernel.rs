@@ -7,8 +7,7 @@
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::{DeviceKind, GpuError, vk};
 
-/// Specialization constants: samples per pixel and frame; tiles of a workgroup.
-const SAMPLES: u32 = 200;
+/// Specialization constant: tiles of a workgroup.
 const TILES: u32 = 201;
 
 /// Tiles of 8x4 pixels that a workgroup works off, one pixel per thread and tile. More of them keep more threads busy while long paths
@@ -26,12 +25,12 @@ fn tiles(frame: &FrameBuilder) -> u32 {
 
 const RGBA: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// Radiance of `spp` samples per pixel.
-pub fn add(frame: &mut FrameBuilder, spp: u32) -> Result<ImageHandle, GpuError> {
+/// Radiance, the mean of the frame's samples per pixel.
+pub fn add(frame: &mut FrameBuilder) -> Result<ImageHandle, GpuError> {
     let radiance = frame.image("radiance", RGBA)?;
     let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
     let (per_group, groups) = (tiles_per_group(frame), tiles(frame).div_ceil(tiles_per_group(frame)));
-    let pass = frame.pass("megakernel", "paths/megakernel").constant(SAMPLES, spp).constant(TILES, per_group).groups(groups);
+    let pass = frame.pass("megakernel", "paths/megakernel").constant(TILES, per_group).groups(groups);
     pass.writes("radiance", radiance).writes("ray_count", ray_count).add()?;
     Ok(radiance)
 }

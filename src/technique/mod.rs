@@ -12,7 +12,7 @@ mod unfiltered;
 pub use parameters::{ParameterError, Parameters};
 pub use renderer::Renderer;
 pub use settings::{RenderError, Settings, ViewChoice};
-pub use timings::{PassTime, Timings};
+pub use timings::{BuildTimes, MemoryUse, PassTime, RayCounts, Timings};
 
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
@@ -35,8 +35,6 @@ pub struct Technique {
 /// What a technique's passes depend on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PassOptions {
-    /// Samples per pixel and frame.
-    pub spp: u32,
     /// An output of the g-buffer was asked for, also where the technique itself does not need it.
     pub gbuffer: bool,
 }

@@ -20,6 +20,6 @@ fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle,
     if options.gbuffer {
         gbuffer::add(frame)?;
     }
-    let radiance = megakernel::add(frame, options.spp)?;
+    let radiance = megakernel::add(frame)?;
     accumulate::add(frame, radiance)
 }

@@ -25,7 +25,14 @@ pub struct Renderer {
     settings: Settings,
     parameters: shared::Parameters,
     recorder: Recorder,
+    /// Since the start, or since the last restart.
     frame: u32,
+    /// Frame of the animation that frame 0 shows.
+    first_frame: u32,
+    /// Of the frame to come; at least 1.
+    samples: f64,
+    /// Samples per pixel that earlier frames have taken of the sequence.
+    first_sample: u32,
     gpu: Gpu,
 }
 
@@ -48,7 +55,7 @@ impl Renderer {
         let constants = [prepared.effects.specialization(), settings.parameters.constants(), prepared.structure.constants()].concat();
         let mut frame = FrameBuilder::new(gpu, &globals, prepared.entry.stem, constants, settings.extent);
         let gbuffer = settings.outputs.iter().any(|name| gbuffer::OUTPUTS.contains(&name.as_str()));
-        let picture = (technique.passes)(&mut frame, PassOptions { spp: settings.spp, gbuffer })?;
+        let picture = (technique.passes)(&mut frame, PassOptions { gbuffer })?;
         let graph = frame.build();
         check_outputs(&settings, &graph)?;
         prepared.build_ms.pipelines = clock.lap();
@@ -59,6 +66,9 @@ impl Renderer {
             recorder: Recorder::new(graph.pass_names().collect()),
             parameters: settings.parameters.fields(),
             frame: 0,
+            first_frame: 0,
+            samples: f64::from(settings.spp),
+            first_sample: 0,
             gpu: gpu.clone(),
             graph,
             picture,
@@ -89,8 +99,30 @@ impl Renderer {
             graph.record(commands, set, timer);
         })?;
         self.recorder.add_cpu(clock.lap());
+        self.first_sample = self.first_sample.wrapping_add(self.samples.ceil() as u32);
         self.frame += 1;
         Ok(())
+    }
+
+    /// Begins anew with other random numbers, at frame `first_frame` of the animation: no frame before it has any effect on the pictures
+    /// to come. Nothing is compiled or built again; the timings go on.
+    ///
+    /// # Errors
+    /// A camera that is not there; the device is lost.
+    pub fn restart(&mut self, seed: u32, first_frame: u32) -> Result<(), RenderError> {
+        self.finish()?;
+        (self.settings.seed, self.first_frame, self.frame, self.first_sample) = (seed, first_frame, 0, 0);
+        if !self.prepared.scene.animation.is_empty() {
+            // Twice, so that nothing seems to have moved.
+            self.advance_pose()?;
+            self.advance_pose()?;
+        }
+        Ok(())
+    }
+
+    /// Samples per pixel of the frames to come, from 1 to what the technique takes; of a fraction, so many pixels take one more.
+    pub fn set_samples(&mut self, samples: f64) {
+        self.samples = samples.clamp(1.0, f64::from(self.settings.technique.max_spp));
     }
 
     /// Waits for all frames.
@@ -134,20 +166,20 @@ impl Renderer {
     /// The device is lost.
     pub fn timings(&mut self) -> Result<Timings, RenderError> {
         self.finish()?;
-        let mut timings = self.recorder.report(self.gpu.capabilities(), self.prepared.entry.name);
+        let mut timings = self.recorder.report(self.gpu.capabilities(), self.prepared.entry.name, &self.graph);
         timings.build_ms = self.prepared.build_ms;
         timings.rays = self.count_rays(timings.frame_ms_median)?;
         timings.memory_bytes = MemoryUse { total: self.gpu.allocated_bytes(), ..self.prepared.memory }.per_triangle();
         Ok(timings)
     }
 
-    /// Something is at another place in the next frame. Frames that become one picture all show time 0.
+    /// Something is at another place in the next frame. Frames that become one picture all show the first one's time.
     fn moves(&self) -> bool {
         !self.settings.technique.accumulates && !self.prepared.scene.animation.is_empty()
     }
 
     fn advance_pose(&mut self) -> Result<(), RenderError> {
-        let time = f64::from(self.frame) / f64::from(self.settings.fps);
+        let time = (f64::from(self.first_frame) + f64::from(self.frame)) / f64::from(self.settings.fps);
         let PreparedScene { pose, scene, .. } = &mut self.prepared;
         Ok(pose.advance(scene, time, |world| self.settings.view.at(scene, world))?)
     }
@@ -160,7 +192,9 @@ impl Renderer {
             previous_camera,
             extent: self.settings.extent,
             seed: self.settings.seed,
-            first_sample: self.frame.wrapping_mul(self.settings.spp),
+            first_sample: self.first_sample,
+            samples: self.samples as u32,
+            more_samples: self.samples.fract() as f32,
             ..Default::default()
         };
         self.prepared.describe(slot, &mut data);

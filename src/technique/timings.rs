@@ -1,5 +1,6 @@
 //! What the frames cost: medians over the frames after the first, which compiles and warms up.
 
+use crate::frame::{FrameGraph, Traffic};
 use crate::gpu::Capabilities;
 use crate::metrics::statistics::quantile;
 use serde::Serialize;
@@ -29,6 +30,9 @@ pub struct Timings {
     pub passes: Vec<PassTime>,
     /// Recording and submitting one frame, without waiting.
     pub cpu_ms_median: f64,
+    /// Of each frame.
+    #[serde(skip)]
+    pub frame_ms: Vec<f64>,
     /// GPU time of the first frame, where drivers may compile.
     pub first_frame_ms: f64,
     pub build_ms: BuildTimes,
@@ -41,6 +45,12 @@ pub struct PassTime {
     pub name: &'static str,
     pub median_ms: f64,
     pub p95_ms: f64,
+    /// Of images and buffers, as the pass declares them; scene, textures and acceleration structure not counted.
+    pub bytes_read: u64,
+    pub bytes_written: u64,
+    /// Of each frame.
+    #[serde(skip)]
+    pub samples_ms: Vec<f64>,
 }
 
 /// What came before the first frame.
@@ -102,11 +112,14 @@ impl Recorder {
     }
 
     /// The report; rays and memory are filled in by the renderer.
-    pub fn report(&self, capabilities: &Capabilities, trace: &str) -> Timings {
-        let pass = |(name, times): (&&'static str, &Vec<f64>)| PassTime {
+    pub fn report(&self, capabilities: &Capabilities, trace: &str, graph: &FrameGraph) -> Timings {
+        let pass = |((name, times), traffic): ((&&'static str, &Vec<f64>), Traffic)| PassTime {
             name,
             median_ms: quantile(warm(times), 0.5),
             p95_ms: quantile(warm(times), 0.95),
+            bytes_read: traffic.read,
+            bytes_written: traffic.written,
+            samples_ms: warm(times),
         };
         Timings {
             version: 1,
@@ -115,7 +128,8 @@ impl Recorder {
             trace: trace.to_owned(),
             frames: warm(&self.frames).len(),
             frame_ms_median: quantile(warm(&self.frames), 0.5),
-            passes: self.names.iter().zip(&self.passes).map(pass).collect(),
+            frame_ms: warm(&self.frames),
+            passes: self.names.iter().zip(&self.passes).zip(graph.traffic()).map(pass).collect(),
             cpu_ms_median: quantile(warm(&self.cpu), 0.5),
             first_frame_ms: self.frames.first().copied().unwrap_or(f64::NAN),
             build_ms: BuildTimes::default(),
