@@ -67,6 +67,11 @@ RayOrigin ray_origin_of_hit(Instance instance, Mesh mesh, uvec3 corners, vec2 ba
     return ray_origin(instance, positions.at[corners.x], positions.at[corners.y], positions.at[corners.z], barycentrics, normal);
 }
 
+/// Where a shadow ray to a light `distance` away ends. A fixed offset is kept from the light, too, as renderers do that know no better.
+float shadow_ray_end(float distance) {
+    return RAY_OFFSET == RAY_OFFSET_ERROR_BOUND ? distance * SHADOW_RAY_END : distance - 2.0 * FIXED_OFFSET;
+}
+
 /// Origin of a ray that leaves along `direction`, on that side of the surface.
 vec3 leave_surface(RayOrigin origin, vec3 direction) {
     vec3 outwards = dot(origin.normal, direction) < 0.0 ? -origin.normal : origin.normal;

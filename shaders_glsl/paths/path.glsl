@@ -160,7 +160,7 @@ Pending sample_direct(Path path, HitPoint point, vec3 wo, vec4 u, float rays) {
     if (max(most.r, max(most.g, most.b)) > 0.0) {
         pending.ray.origin = leave_surface(point.origin, light.direction);
         pending.ray.direction = light.direction;
-        pending.ray.t_max = light.distance * SHADOW_RAY_END;
+        pending.ray.t_max = shadow_ray_end(light.distance);
     }
     return pending;
 }

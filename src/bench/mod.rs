@@ -1,7 +1,17 @@
 //! What accuracy costs in time: suites of measurements, the runner that makes them, their statistics, and the report.
 
+pub mod accuracy;
 pub mod figure;
+pub mod log;
+pub mod plan;
+mod provenance;
 pub mod record;
+pub mod reference;
+pub mod roofline;
+pub mod runner;
+mod shots;
+mod stage;
+pub mod suite;
 
 pub use figure::{Better, FigureKind};
 pub use record::{Figure, Record};

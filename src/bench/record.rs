@@ -50,6 +50,13 @@ pub struct Point {
     pub switch: Option<Switch>,
 }
 
+impl Point {
+    /// The frame of the animation that its picture shows; `sequence`: frames of the scene's sequence.
+    pub fn frame_shown(&self, sequence: u32) -> u32 {
+        if self.moves == Moves::Nothing { 0 } else { sequence.max(1) - 1 }
+    }
+}
+
 /// What moves in a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

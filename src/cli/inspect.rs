@@ -4,7 +4,7 @@ mod summary;
 
 use self::summary::Summary;
 use super::{Outcome, output};
-use crate::scene::{self, Scene, builtin};
+use crate::scene::{builtin, source};
 use anyhow::bail;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -27,20 +27,9 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     if let Some(path) = &args.export {
         export(&args.scene, path)?;
     }
-    let summary = Summary::of(&load(&args.scene)?);
+    let summary = Summary::of(&source::load(&args.scene)?);
     output::print_result(&if args.json { serde_json::to_string_pretty(&summary)? } else { summary.to_string() })?;
     Ok(Outcome::Done)
-}
-
-/// A built-in scene where one has that name, else the file.
-pub fn load(scene: &str) -> anyhow::Result<Scene> {
-    Ok(match builtin::find(scene)? {
-        Some(request) => request.load()?,
-        None if Path::new(scene).extension().is_none() && !Path::new(scene).exists() => {
-            bail!("'{scene}' is neither a file nor a built-in scene; built in are {}", builtin::names().collect::<Vec<_>>().join(", "))
-        }
-        None => scene::gltf::load(Path::new(scene))?,
-    })
 }
 
 fn export(scene: &str, path: &Path) -> anyhow::Result<()> {

@@ -3,6 +3,7 @@
 //! Exit codes: 0 done; 1 a check that the user asked for failed; 2 bad input or environment; 101 a bug in pathspace.
 
 pub mod arguments;
+pub mod bench;
 pub mod devices;
 pub mod diff;
 pub mod inspect;
@@ -43,6 +44,7 @@ enum Command {
     Inspect(inspect::Args),
     Devices(devices::Args),
     Diff(diff::Args),
+    Bench(bench::Args),
 }
 
 impl Command {
@@ -52,6 +54,7 @@ impl Command {
             Command::Inspect(args) => inspect::run(args),
             Command::Devices(args) => devices::run(args),
             Command::Diff(args) => diff::run(args),
+            Command::Bench(args) => bench::run(args),
         }
     }
 }

@@ -30,6 +30,11 @@ impl Progress {
         self.bar.inc(done);
     }
 
+    /// What is being done now.
+    pub fn what(&self, what: &str) {
+        self.bar.set_message(format!(", {what}"));
+    }
+
     /// Standard error of the picture's mean, relative to that mean.
     pub fn error_estimate(&self, relative: f64) {
         self.bar.set_message(format!(", error {:.2} %", relative * 100.0));

@@ -6,7 +6,7 @@ use super::output::{print_result, write_atomically, write_picture};
 use super::progress::Progress;
 use crate::display::{ExrContents, ToneCurve, ToneMapping};
 use crate::gpu::{DeviceOptions, Gpu};
-use crate::scene::{CameraView, Environment, Scene};
+use crate::scene::{CameraView, Environment, Scene, source};
 use crate::technique::{self, Parameters, Renderer, Settings, Technique, ViewChoice};
 use anyhow::{Context, anyhow};
 use glam::DVec3;
@@ -84,6 +84,9 @@ pub struct Args {
     /// Effects to compile in: what the scene calls for, or all of them; the picture is the same
     #[arg(long, value_enum, default_value = "auto")]
     pub effects: EffectChoice,
+    /// Frame of the animation that the first frame shows
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub first_frame: u32,
     /// Animation: frame i shows the scene at i / FPS seconds
     #[arg(long, value_name = "N", value_parser = arguments::positive, default_value = "30")]
     pub fps: f32,
@@ -128,6 +131,9 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         outputs: args.aov.iter().map(|(name, _)| name.clone()).collect(),
     };
     let mut renderer = Renderer::new(&gpu, scene, settings)?;
+    if args.first_frame > 0 {
+        renderer.restart(args.seed, args.first_frame)?;
+    }
     render_frames(&mut renderer, frames, args.size, spp)?;
     args.write(&mut renderer, spp, frames)?;
     Ok(Outcome::Done)
@@ -160,10 +166,7 @@ fn unknown_technique(name: &str) -> anyhow::Error {
 
 impl Args {
     fn parameters(&self, technique: &Technique) -> anyhow::Result<Parameters> {
-        let mut parameters = Parameters::default();
-        for (key, value) in technique.defaults {
-            parameters.set(key, value)?;
-        }
+        let mut parameters = technique.parameters();
         for (key, value) in &self.set {
             parameters.set(key, value)?;
         }
@@ -180,7 +183,7 @@ impl Args {
     }
 
     fn load_scene(&self) -> anyhow::Result<Scene> {
-        let mut scene = super::inspect::load(&self.scene)?;
+        let mut scene = source::load(&self.scene)?;
         if let Some(path) = &self.environment {
             let (environment, warnings) = Environment::load(path)?;
             scene.environment = environment;

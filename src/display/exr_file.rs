@@ -47,6 +47,52 @@ fn latin1(text: &str) -> Text {
     Text::new_or_panic(text.chars().map(|c| if (c as u32) < 256 { c } else { '?' }).collect::<String>())
 }
 
+/// A file that [`ExrContents::write`] has written.
+pub struct ExrFile {
+    pub image: Image,
+    channels: Vec<(String, Vec<f32>)>,
+    attributes: Vec<(String, String)>,
+}
+
+impl ExrFile {
+    /// # Errors
+    /// A reason without the file's name.
+    pub fn read(from: impl Read + Seek) -> Result<Self, String> {
+        let file = exr::prelude::read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .first_valid_layer()
+            .all_attributes()
+            .from_buffered(from)
+            .map_err(|error| error.to_string())?;
+        let image = rgb_image(&file.layer_data).ok_or("it has no channels R, G, B")?;
+        let channels = file.layer_data.channel_data.list.iter();
+        let text = |(key, value): (&Text, &AttributeValue)| match value {
+            AttributeValue::Text(value) => Some((key.to_string(), value.to_string())),
+            _ => None,
+        };
+        Ok(Self {
+            image,
+            channels: channels.map(|channel| (channel.name.to_string(), channel.sample_data.values_as_f32().collect())).collect(),
+            attributes: file.layer_data.attributes.other.iter().filter_map(text).collect(),
+        })
+    }
+
+    /// One of the images beside the main one.
+    pub fn beside(&self, name: &str) -> Option<Image> {
+        let channel = |part: &str| self.channels.iter().find(|(n, _)| *n == format!("{name}.{part}")).map(|(_, values)| values);
+        let (r, g, b) = (channel("R")?, channel("G")?, channel("B")?);
+        let pixels = r.iter().zip(g).zip(b).map(|((&r, &g), &b)| [r, g, b]).collect();
+        Some(Image::new(self.image.width, self.image.height, pixels))
+    }
+
+    /// What was noted under `key`.
+    pub fn attribute(&self, key: &str) -> Option<&str> {
+        self.attributes.iter().find(|(k, _)| *k == format!("pathspace.{key}")).map(|(_, value)| value.as_str())
+    }
+}
+
 /// Reads the first part that has channels R, G and B, or one of brightness alone (Y, or a single channel), of any sample
 /// type and in any order. The error is a reason without the file's name.
 pub(super) fn read(from: impl Read + Seek) -> Result<Image, String> {

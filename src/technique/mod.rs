@@ -32,6 +32,17 @@ pub struct Technique {
     pub(crate) passes: fn(&mut FrameBuilder, PassOptions) -> Result<ImageHandle, GpuError>,
 }
 
+impl Technique {
+    /// Every parameter at its default here.
+    pub fn parameters(&self) -> Parameters {
+        let mut parameters = Parameters::default();
+        for (key, value) in self.defaults {
+            parameters.set(key, value).expect("a technique's defaults are parameters");
+        }
+        parameters
+    }
+}
+
 /// What a technique's passes depend on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PassOptions {

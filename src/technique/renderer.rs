@@ -134,7 +134,12 @@ impl Renderer {
         Ok(())
     }
 
-    /// Frames rendered.
+    /// Frames whose time is known, over all restarts.
+    pub fn frames_timed(&self) -> usize {
+        self.recorder.frames()
+    }
+
+    /// Frames rendered since the last restart.
     pub fn frame(&self) -> u32 {
         self.frame
     }

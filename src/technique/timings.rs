@@ -107,6 +107,10 @@ impl Recorder {
         self.frames.extend(total);
     }
 
+    pub fn frames(&self) -> usize {
+        self.cpu.len()
+    }
+
     pub fn add_cpu(&mut self, milliseconds: f64) {
         self.cpu.push(milliseconds);
     }

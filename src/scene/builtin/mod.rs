@@ -42,7 +42,7 @@ pub struct Options {
 /// The scene that is shown where none is named.
 pub const DEFAULT: &str = "cornell";
 
-pub static REGISTRY: [Builtin; 6] = [
+pub static REGISTRY: [Builtin; 7] = [
     Builtin {
         name: "cornell",
         help: "Cornell box with the classic dimensions, diffuse, one area light",
@@ -84,6 +84,13 @@ pub static REGISTRY: [Builtin; 6] = [
         triangles: Some(hall::TRIANGLES),
         environment: None,
         make: hall::make,
+    },
+    Builtin {
+        name: "still-life",
+        help: "all kinds of material and light on one table: assets/scenes/still_life.glb",
+        triangles: None,
+        environment: None,
+        make: |_| include_bytes!("../../../assets/scenes/still_life.glb").to_vec(),
     },
 ];
 
