@@ -64,7 +64,6 @@ pub fn plan(suite: &Suite) -> Result<Vec<Planned>, SuiteError> {
             }
         }
     }
-    check_names(suite)?;
     let mut seen = HashSet::new();
     let planned = points.into_iter().map(|(scene, point)| Planned { key: key_of(&point), point, scene });
     Ok(planned.filter(|planned| seen.insert(planned.key.clone())).collect())
@@ -96,18 +95,6 @@ fn parse_size(text: &str) -> Option<[u32; 2]> {
     let (width, height) = text.split_once('x')?;
     let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
     Some([side(width)?, side(height)?])
-}
-
-/// Rows may name scenes; a name that no scene has would silently measure nothing.
-fn check_names(suite: &Suite) -> Result<(), SuiteError> {
-    let named = suite.techniques.iter().flat_map(|row| &row.scenes).chain(suite.switches.iter().flat_map(|row| &row.scenes)).flatten();
-    for name in named {
-        if !suite.scenes.iter().any(|scene| scene.name == *name) && suite.quick == Default::default() {
-            let known: Vec<&str> = suite.scenes.iter().map(|scene| scene.name.as_str()).collect();
-            return Err(wrong(suite, "scenes", format!("there is no scene '{name}'; there are {}", known.join(", "))));
-        }
-    }
-    Ok(())
 }
 
 /// Where points are made.
@@ -221,4 +208,73 @@ fn combinations(settings: &Values, grid: &BTreeMap<String, Vec<String>>) -> Vec<
         };
         combinations.iter().flat_map(|base| values.iter().map(move |value| with(base, value))).collect()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn standard() -> Vec<Planned> {
+        plan(&Suite::load(None).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn the_suites_that_ship_are_of_registered_techniques_and_parameters() {
+        let points = standard();
+        for technique in &technique::REGISTRY {
+            assert!(points.iter().any(|planned| planned.point.technique == technique.name), "{}", technique.name);
+        }
+        let quick = plan(&Suite::load(None).unwrap().quick()).unwrap();
+        assert!(!quick.is_empty() && quick.len() < points.len() / 4);
+    }
+
+    #[test]
+    fn every_point_is_there_once_and_every_switch_has_its_base() {
+        let points = standard();
+        let keys: HashSet<&str> = points.iter().map(|planned| planned.key.as_str()).collect();
+        assert_eq!(keys.len(), points.len());
+        let switches: Vec<&Switch> = points.iter().filter_map(|planned| planned.point.switch.as_ref()).collect();
+        assert!(switches.len() > 50 && switches.iter().all(|switch| keys.contains(switch.base.as_str())));
+        assert!(switches.iter().all(|switch| switch.value != switch.base_value));
+    }
+
+    #[test]
+    fn shards_share_nothing_and_leave_nothing_out() {
+        let points = standard();
+        for of in [1, 2, 7, 1000] {
+            let parts: Vec<Planned> = (1..=of).flat_map(|index| shard(points.clone(), Shard { index, of })).collect();
+            assert_eq!(parts, points, "{of}");
+        }
+        assert!("0/3".parse::<Shard>().is_err() && "4/3".parse::<Shard>().is_err() && "1".parse::<Shard>().is_err());
+    }
+
+    /// Results of two versions of the program are compared by it.
+    #[test]
+    fn the_key_of_a_point_stays_what_it_was() {
+        let point = Point {
+            scene: "a".to_owned(),
+            source: "cornell".to_owned(),
+            moves: Moves::Nothing,
+            size: [2, 1],
+            technique: "reference".to_owned(),
+            spp: 1,
+            frames: 1,
+            trace: "auto".to_owned(),
+            settings: Values::new(),
+            all_effects: false,
+            switch: None,
+        };
+        assert_eq!(key_of(&point), "c03b5bb52a17057e");
+        assert_ne!(key_of(&point), key_of(&Point { spp: 2, ..point.clone() }));
+    }
+
+    #[test]
+    fn grids_are_combined() {
+        let grid = [("a", vec!["1", "2"]), ("b", vec!["3", "4", "5"])];
+        let grid = grid.map(|(key, values)| (key.to_owned(), values.into_iter().map(str::to_owned).collect())).into();
+        let base = Values::from([("c".to_owned(), "0".to_owned())]);
+        let all = combinations(&base, &grid);
+        assert_eq!(all.len(), 6);
+        assert!(all.iter().all(|values| values.len() == 3));
+    }
 }

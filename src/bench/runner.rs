@@ -121,7 +121,7 @@ impl<'a> Runner<'a> {
                     Moves::Nothing => None,
                     _ => Some(self.references.reference(&subject(frame.saturating_sub(1)), reference.samples)?),
                 };
-                let figures = accuracy::figures(&shots, &reference, before.as_ref(), ratio);
+                let figures = accuracy::figures(shots, &reference, before.as_ref(), ratio);
                 let quality = ReferenceQuality { key: subject(frame).key()?, samples_per_pixel: reference.samples, standard_error, ratio };
                 return Ok(Truth { reference, quality, figures });
             }

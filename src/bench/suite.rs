@@ -172,10 +172,20 @@ impl Suite {
         if suite.version != VERSION {
             return Err(malformed(format!("version {} is unknown; this program reads version {VERSION}", suite.version)));
         }
-        if suite.seeds == 0 || !(suite.reference.ratio > 0.0) || suite.reference.most_samples == 0 {
+        if suite.seeds == 0 || suite.reference.ratio.is_nan() || suite.reference.ratio <= 0.0 || suite.reference.most_samples == 0 {
             return Err(malformed("seeds, reference.ratio and reference.most_samples must be above 0".to_owned()));
         }
+        if let Some(name) = suite.named_scenes().find(|name| !suite.scenes.iter().any(|scene| scene.name == **name)) {
+            let known: Vec<&str> = suite.scenes.iter().map(|scene| scene.name.as_str()).collect();
+            return Err(malformed(format!("there is no scene '{name}'; there are {}", known.join(", "))));
+        }
         Ok(Self { folder: folder.to_owned(), ..suite })
+    }
+
+    /// Scenes that rows are limited to: a name that no scene has would silently measure nothing.
+    fn named_scenes(&self) -> impl Iterator<Item = &String> {
+        let rows = self.techniques.iter().map(|row| &row.scenes).chain(self.switches.iter().map(|row| &row.scenes));
+        rows.chain([&self.quick.scenes, &self.quick.switch_scenes]).flatten().flatten()
     }
 
     /// The same suite, cut down to what takes minutes.
@@ -203,5 +213,31 @@ impl Suite {
     pub fn path_of(&self, file: &str) -> String {
         let path = self.folder.join(file);
         if path.exists() && Path::new(file).extension().is_some() { path.to_string_lossy().into_owned() } else { file.to_owned() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(from: &str, to: &str) -> String {
+        assert!(STANDARD.contains(from), "{from}");
+        Suite::parse("test", &STANDARD.replacen(from, to, 1), Path::new("")).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_no_suite_can_say_is_refused_with_its_place() {
+        assert!(error("version = 1", "version = 2").contains("version 2 is unknown"));
+        assert!(error("seeds = 8", "seeds = 0").contains("seeds"));
+        assert!(error("seeds = 8", "sneeds = 8").contains("sneeds"));
+        assert!(error("switch_scenes = [\"cornell\"]", "switch_scenes = [\"kitchen\"]").contains("no scene 'kitchen'; there are cornell"));
+        assert!(Suite::load(Some(Path::new("missing.toml"))).unwrap_err().to_string().contains("missing.toml"));
+    }
+
+    #[test]
+    fn a_quick_suite_is_smaller_in_every_respect() {
+        let (whole, quick) = (Suite::load(None).unwrap(), Suite::load(None).unwrap().quick());
+        assert!(quick.scenes.len() < whole.scenes.len() && quick.seeds < whole.seeds);
+        assert!(quick.techniques[0].spp.len() < whole.techniques[0].spp.len());
     }
 }
