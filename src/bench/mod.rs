@@ -2,6 +2,7 @@
 
 pub mod accuracy;
 pub mod figure;
+pub mod front;
 pub mod log;
 pub mod plan;
 mod provenance;

@@ -2,6 +2,7 @@
 //! tests and measurements take them.
 
 pub mod parameters;
+mod governor;
 mod prepared;
 mod reference;
 mod renderer;
@@ -9,6 +10,7 @@ mod settings;
 mod timings;
 mod unfiltered;
 
+pub use governor::Governor;
 pub use parameters::{ParameterError, Parameters};
 pub use renderer::Renderer;
 pub use settings::{RenderError, Settings, ViewChoice};
