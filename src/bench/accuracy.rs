@@ -45,3 +45,11 @@ pub fn heatmap(picture: &Image, reference: &Image, mapping: &ToneMapping) -> Vec
     .unwrap();
     v
 }
+
+/// Mean LDR-FLIP of the pictures as a screen shows them.
+pub fn mean_flip(pictures: &[Image], reference: &Reference) -> f64 {
+    let mapping = ToneMapping::default();
+    let b = mapping.encoded(&reference.mean);
+    let flip = |p: &Image| metrics::flip(&Pair::new(&mapping.encoded(&p.made_finite("a picture")), &b).unwrap()).mean;
+    pictures.iter().map(flip).sum::<f64>() / pictures.len() as f64
+}

@@ -62,7 +62,8 @@ impl Front {
         let mut choices: Vec<Choice> = self.candidates.iter().map(|candidate| as_measured(candidate, pixels)).collect();
         choices.extend(wish.budget_ms.into_iter().flat_map(|ms| self.between(ms, pixels)));
         let affordable: Vec<&Choice> = choices.iter().filter(|choice| choice.predicted_ms <= budget * (1.0 + 1e-9)).collect();
-        let cheapest = |choices: &mut dyn Iterator<Item = &Choice>| choices.min_by(|a, b| a.predicted_ms.total_cmp(&b.predicted_ms)).cloned();
+        let cheapest =
+            |choices: &mut dyn Iterator<Item = &Choice>| choices.min_by(|a, b| a.predicted_ms.total_cmp(&b.predicted_ms)).cloned();
         let best = affordable.iter().min_by(|a, b| a.predicted_flip.total_cmp(&b.predicted_flip)).map(|choice| (*choice).clone());
         let reaching = |target: f64| cheapest(&mut affordable.iter().copied().filter(|choice| choice.predicted_flip <= target));
         let (choice, reason) = match (wish.target_flip.map(reaching), best) {
@@ -170,6 +171,8 @@ mod tests {
     #[test]
     fn a_budget_that_nothing_keeps_to_gives_the_cheapest_and_says_so() {
         let choice = choose(Some(1.0), None);
-        assert!(choice.candidate.technique == "reference" && choice.samples == 1.0 && choice.reason.contains("nothing keeps to the budget"));
+        assert!(
+            choice.candidate.technique == "reference" && choice.samples == 1.0 && choice.reason.contains("nothing keeps to the budget")
+        );
     }
 }

@@ -1,6 +1,7 @@
 //! What accuracy costs in time: suites of measurements, the runner that makes them, their statistics, and the report.
 
 pub mod accuracy;
+pub mod calibrate;
 pub mod figure;
 pub mod front;
 pub mod log;

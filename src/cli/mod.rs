@@ -4,6 +4,7 @@
 
 pub mod arguments;
 pub mod bench;
+pub mod budget;
 pub mod devices;
 pub mod diff;
 pub mod inspect;

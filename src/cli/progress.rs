@@ -30,6 +30,11 @@ impl Progress {
         self.bar.inc(done);
     }
 
+    /// So much is done in all.
+    pub fn reach(&self, done: u64) {
+        self.bar.set_position(done);
+    }
+
     /// What is being done now.
     pub fn what(&self, what: &str) {
         self.bar.set_message(format!(", {what}"));

@@ -2,8 +2,10 @@
 
 use super::Outcome;
 use super::arguments::{self, Size};
+use super::budget::Budget;
 use super::output::{print_result, write_atomically, write_picture};
 use super::progress::Progress;
+use crate::bench::front::Wish;
 use crate::display::{ExrContents, ToneCurve, ToneMapping};
 use crate::gpu::{DeviceOptions, Gpu};
 use crate::scene::{CameraView, Environment, Scene, source};
@@ -34,7 +36,7 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
     /// How the noise of few samples becomes a picture
-    #[arg(long, value_name = "NAME", default_value = "reference")]
+    #[arg(long, value_name = "NAME", default_value = "reference", conflicts_with_all = ["budget_ms", "target_flip"])]
     pub technique: String,
     /// Acceleration structure: auto, ray-query or bvh
     #[arg(long, value_name = "NAME", default_value = "auto")]
@@ -75,6 +77,15 @@ pub struct Args {
     /// Vulkan device, as 'pathspace devices' lists them [default: the best]
     #[arg(long, value_name = "NAME|INDEX")]
     pub device: Option<String>,
+    /// Milliseconds that a frame may take: technique and samples are chosen from what was measured on this device, and adapted while rendering
+    #[arg(long, value_name = "MS", value_parser = arguments::positive, conflicts_with = "spp")]
+    pub budget_ms: Option<f32>,
+    /// Mean FLIP that a frame should reach, as cheaply as possible; with --budget-ms within it
+    #[arg(long, value_name = "FLIP", value_parser = arguments::positive, conflicts_with = "spp")]
+    pub target_flip: Option<f32>,
+    /// Measure this device and scene anew for --budget-ms and --target-flip; otherwise it is done once
+    #[arg(long)]
+    pub calibrate: bool,
     /// Exposure of PNG files: radiance is multiplied by 2^EV
     #[arg(long, value_name = "EV", value_parser = arguments::finite, allow_hyphen_values = true, default_value = "0")]
     pub exposure: f32,
@@ -130,23 +141,37 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         view: args.view(),
         outputs: args.aov.iter().map(|(name, _)| name.clone()).collect(),
     };
+    let (mut budget, settings) = match args.wish() {
+        Some(wish) => {
+            let (budget, settings) = Budget::plan(&gpu, &scene, settings, wish, args.calibrate)?;
+            print_result(&budget.explain())?;
+            (Some(budget), settings)
+        }
+        None => (None, settings),
+    };
     let mut renderer = Renderer::new(&gpu, scene, settings)?;
     if args.first_frame > 0 {
         renderer.restart(args.seed, args.first_frame)?;
     }
-    render_frames(&mut renderer, frames, args.size, spp)?;
+    render_frames(&mut renderer, frames, args.size, spp, budget.as_mut())?;
     args.write(&mut renderer, spp, frames)?;
+    if let Some(outcome) = budget.map(|budget| renderer.timings().map(|timings| budget.outcome(&timings))).transpose()?.flatten() {
+        print_result(&outcome)?;
+    }
     Ok(Outcome::Done)
 }
 
 /// How often the error is estimated; it costs a wait for the device.
 const ESTIMATE_EVERY: Duration = Duration::from_secs(2);
 
-fn render_frames(renderer: &mut Renderer, frames: u32, size: Size, spp: u32) -> anyhow::Result<()> {
+fn render_frames(renderer: &mut Renderer, frames: u32, size: Size, spp: u32, mut budget: Option<&mut Budget>) -> anyhow::Result<()> {
     let samples = u64::from(size.width) * u64::from(size.height) * u64::from(spp);
     let progress = Progress::new("rendering", samples * u64::from(frames), "samples");
     let mut estimated = Instant::now();
     for _ in 0..frames {
+        if let Some(budget) = budget.as_deref_mut() {
+            budget.steer(renderer);
+        }
         renderer.render_frame()?;
         progress.advance(samples);
         if estimated.elapsed() > ESTIMATE_EVERY {
@@ -174,6 +199,11 @@ impl Args {
             parameters.set("paths.max_bounces", &bounces.to_string())?;
         }
         Ok(parameters)
+    }
+
+    fn wish(&self) -> Option<Wish> {
+        let wish = Wish { budget_ms: self.budget_ms.map(f64::from), target_flip: self.target_flip.map(f64::from) };
+        (wish.budget_ms.is_some() || wish.target_flip.is_some()).then_some(wish)
     }
 
     /// Samples per pixel and frame, and frames.

@@ -97,6 +97,16 @@ impl Parameters {
         Ok(())
     }
 
+    /// `onto`, with the values that differ here from `base`.
+    pub fn changed_from(&self, base: &Self, mut onto: Self) -> Self {
+        for ((value, base), onto) in self.0.iter().zip(&base.0).zip(&mut onto.0) {
+            if value != base {
+                *onto = *value;
+            }
+        }
+        onto
+    }
+
     /// The value as a user would write it.
     pub fn value(&self, parameter: &Parameter) -> String {
         let index = TABLE.iter().position(|p| p.key == parameter.key).expect("parameters come from the table");
@@ -191,6 +201,17 @@ mod tests {
         let mut parameters = Parameters::default();
         parameters.set("rays.budget", "q2rtx").unwrap();
         assert_eq!((parameters.fields().max_bounces, parameters.fields().first_shadow_rays), (2, 2));
+    }
+
+    #[test]
+    fn changes_carry_over_to_other_defaults() {
+        let base = Parameters::default();
+        let (mut mine, mut other) = (base.clone(), base.clone());
+        mine.set("paths.max_bounces", "3").unwrap();
+        other.set("textures.level", "zero").unwrap();
+        let both = mine.changed_from(&base, other.clone());
+        other.set("paths.max_bounces", "3").unwrap();
+        assert_eq!(both, other);
     }
 
     #[test]

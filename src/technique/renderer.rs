@@ -134,9 +134,19 @@ impl Renderer {
         Ok(())
     }
 
-    /// Frames whose time is known, over all restarts.
+    /// GPU milliseconds of the last frame that is known to be done.
+    pub fn last_frame_ms(&self) -> Option<f64> {
+        self.recorder.last_frame_ms()
+    }
+
+    /// Frames recorded, over all restarts.
     pub fn frames_timed(&self) -> usize {
         self.recorder.frames()
+    }
+
+    /// Frames whose GPU time is known, over all restarts.
+    pub fn gpu_frames(&self) -> usize {
+        self.recorder.gpu_frames()
     }
 
     /// Frames rendered since the last restart.

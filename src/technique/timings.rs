@@ -107,8 +107,16 @@ impl Recorder {
         self.frames.extend(total);
     }
 
+    pub fn last_frame_ms(&self) -> Option<f64> {
+        self.frames.last().copied()
+    }
+
     pub fn frames(&self) -> usize {
         self.cpu.len()
+    }
+
+    pub fn gpu_frames(&self) -> usize {
+        self.frames.len()
     }
 
     pub fn add_cpu(&mut self, milliseconds: f64) {

@@ -1,0 +1,140 @@
+//! Measures the front of one scene on one device, small and fast, and keeps it on disk: what `--budget-ms` and `--target-flip` choose from.
+
+use super::accuracy;
+use super::front::{Candidate, Front, VERSION};
+use super::record::{Moves, Point};
+use super::reference::{ReferenceCache, Subject};
+use super::runner::BenchError;
+use super::shots::Shots;
+use super::suite::Values;
+use crate::gpu::Gpu;
+use crate::scene::Scene;
+use crate::technique::{REGISTRY, Renderer, Settings, Technique};
+use std::path::PathBuf;
+
+/// Pixels that a calibration renders: enough for stable times, few enough for a minute.
+const PIXELS: f64 = 160.0 * 90.0;
+/// Samples per pixel that are measured of techniques that take several.
+const SAMPLES: [u32; 3] = [1, 2, 8];
+/// Of techniques that remember: what a picture looks like once they have.
+const FRAMES: u32 = 8;
+const SEEDS: [u32; 2] = [1, 2];
+/// Of the reference: as many as so much time allows, within bounds.
+const REFERENCE_MS: f64 = 20_000.0;
+const REFERENCE_SAMPLES: [f64; 2] = [64.0, 512.0];
+
+/// What is calibrated.
+pub struct Calibration<'a> {
+    pub gpu: &'a Gpu,
+    pub scene: &'a Scene,
+    /// As the user wants to render; technique, samples and size are the calibration's own.
+    pub settings: &'a Settings,
+}
+
+impl Calibration<'_> {
+    /// The front that was kept, unless `anew`; else measures it. `progress` is told how many candidates are done, and of how many.
+    ///
+    /// # Errors
+    /// The device cannot render the scene.
+    pub fn front(&self, anew: bool, mut progress: impl FnMut(usize, usize)) -> Result<Front, BenchError> {
+        let path = self.path()?;
+        let kept = || serde_json::from_slice::<Front>(&std::fs::read(path.as_ref()?).ok()?).ok();
+        if let Some(front) = kept().filter(|front| !anew && front.version == VERSION) {
+            return Ok(front);
+        }
+        let front = self.measure(&mut progress)?;
+        if let Some(path) = path
+            && keep(&path, &front).is_err()
+        {
+            tracing::warn!("the calibration could not be kept in '{}'", path.display());
+        }
+        Ok(front)
+    }
+
+    fn measure(&self, progress: &mut dyn FnMut(usize, usize)) -> Result<Front, BenchError> {
+        let size = self.size();
+        let truth =
+            Settings { extent: size, technique: reference(), parameters: self.with_user_values(reference()), ..self.settings.clone() };
+        let subject = Subject { gpu: self.gpu, scene: self.scene, settings: &truth, frame: 0 };
+        let reference = ReferenceCache::open().reference(&subject, self.reference_samples(&truth)?)?;
+        let samples =
+            |technique: &'static Technique| SAMPLES.into_iter().filter(|&spp| spp <= technique.max_spp).map(move |spp| (technique, spp));
+        let all: Vec<(&Technique, u32)> = REGISTRY.iter().flat_map(samples).collect();
+        let mut candidates = Vec::new();
+        for (done, &(technique, spp)) in all.iter().enumerate() {
+            progress(done, all.len());
+            let point = self.point(technique, spp, size);
+            let parameters = self.with_user_values(technique);
+            let settings = Settings { technique, spp, parameters, ..truth.clone() };
+            let shots = Shots::take(self.gpu, self.scene, &settings, &point, 1, &SEEDS)?;
+            candidates.push(Candidate {
+                technique: technique.name.to_owned(),
+                settings: Values::new(),
+                spp,
+                most_spp: technique.max_spp,
+                ns_per_pixel: shots.timings.frame_ms_median * 1e6 / f64::from(size[0] * size[1]),
+                flip: accuracy::mean_flip(&shots.last, &reference),
+            });
+        }
+        candidates.retain(|candidate| candidate.ns_per_pixel.is_finite() && candidate.flip.is_finite());
+        Ok(Front { version: VERSION, candidates })
+    }
+
+    fn reference_samples(&self, truth: &Settings) -> Result<u64, BenchError> {
+        let mut renderer = Renderer::new(self.gpu, self.scene.clone(), Settings { spp: 1, ..truth.clone() })?;
+        (0..3).try_for_each(|_| renderer.render_frame())?;
+        let [least, most] = REFERENCE_SAMPLES;
+        Ok((REFERENCE_MS / renderer.timings()?.frame_ms_median).clamp(least, most) as u64)
+    }
+
+    /// The picture's shape at [`PIXELS`], or the picture's own size where that is smaller.
+    fn size(&self) -> [u32; 2] {
+        let [width, height] = self.settings.extent.map(f64::from);
+        let scale = (PIXELS / (width * height)).sqrt().min(1.0);
+        [width, height].map(|side| ((side * scale).round() as u32).max(11))
+    }
+
+    /// What the user has set, over a technique's own defaults.
+    fn with_user_values(&self, technique: &Technique) -> crate::technique::Parameters {
+        self.settings.parameters.changed_from(&self.settings.technique.parameters(), technique.parameters())
+    }
+
+    fn point(&self, technique: &Technique, spp: u32, size: [u32; 2]) -> Point {
+        Point {
+            scene: self.scene.name.clone(),
+            source: String::new(),
+            moves: Moves::Nothing,
+            size,
+            technique: technique.name.to_owned(),
+            spp,
+            frames: if technique.accumulates { 1 } else { FRAMES },
+            trace: self.settings.trace.clone(),
+            settings: Values::new(),
+            all_effects: self.settings.all_effects,
+            switch: None,
+        }
+    }
+
+    /// Under a hash of scene, view, shape, parameters, device, driver and program.
+    fn path(&self) -> Result<Option<PathBuf>, BenchError> {
+        let settings = Settings { extent: self.size(), ..self.settings.clone() };
+        let subject = Subject { gpu: self.gpu, scene: self.scene, settings: &settings, frame: 0 };
+        let device = self.gpu.capabilities();
+        let text = format!("{} {} {} {} {}", subject.key()?, device.name, device.driver, self.settings.trace, env!("PATHSPACE_COMMIT"));
+        let name = format!("{}.json", &blake3::hash(text.as_bytes()).to_hex()[..32]);
+        Ok(dirs::cache_dir().map(|folder| folder.join("pathspace/calibrations").join(name)))
+    }
+}
+
+fn reference() -> &'static Technique {
+    crate::technique::find("reference").expect("it is registered")
+}
+
+fn keep(path: &std::path::Path, front: &Front) -> std::io::Result<()> {
+    let folder = path.parent().expect("a file in a folder");
+    std::fs::create_dir_all(folder)?;
+    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    serde_json::to_writer(&mut file, front)?;
+    file.persist(path).map_err(|error| error.error)?;
+    Ok(())
+}
