@@ -2,7 +2,7 @@
 
 use pathspace::display::Image;
 use pathspace::gpu::Gpu;
-use pathspace::scene::{Scene, builtin};
+use pathspace::scene::{Mesh, Scene, builtin};
 use pathspace::technique::{self, Parameters, Renderer, Settings, ViewChoice};
 
 /// A picture and the variance of each of its values.
@@ -38,6 +38,18 @@ pub fn set(settings: &mut Settings, values: &[(&str, &str)]) {
 
 pub fn builtin(name: &str) -> Scene {
     builtin::find(name).unwrap().expect("a built-in scene").load().unwrap()
+}
+
+/// A square of 40 m that faces +z.
+pub fn wall() -> Mesh {
+    let size = 20.0;
+    Mesh {
+        positions: vec![[-size, -size, 0.0], [size, -size, 0.0], [size, size, 0.0], [-size, size, 0.0]],
+        normals: vec![[0.0, 0.0, 1.0]; 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        triangle_materials: vec![0, 0],
+        ..Default::default()
+    }
 }
 
 pub fn render(gpu: &Gpu, scene: &Scene, settings: &Settings, frames: u32) -> Rendered {

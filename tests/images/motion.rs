@@ -1,10 +1,10 @@
 //! Motion vectors of the g-buffer: from where a point is to where it was, in pixels, whatever moved and wherever the world is.
 
 use crate::common;
-use crate::common::render::settings;
+use crate::common::render::{builtin, settings, wall};
 use glam::{DQuat, DVec3};
 use pathspace::scene::animation::{Animation, Channel, Interpolation, Keys};
-use pathspace::scene::{Camera, Environment, Instance, Local, Material, Mesh, Node, Projection, Scene};
+use pathspace::scene::{Camera, Environment, Instance, Local, Material, Node, Projection, Scene};
 use pathspace::technique::{self, Renderer, Settings};
 
 const DEPTH: f64 = 4.0;
@@ -21,20 +21,12 @@ fn at(translation: DVec3, parent: Option<u32>) -> Node {
 
 /// A wall that fills the picture, 4 m in front of a camera; node `moving` goes `STEP` metres per frame along `direction`.
 fn wall_and_camera(place: DVec3, moving: u32, direction: DVec3) -> Scene {
-    let size = 20.0;
-    let wall = Mesh {
-        positions: vec![[-size, -size, 0.0], [size, -size, 0.0], [size, size, 0.0], [-size, size, 0.0]],
-        normals: vec![[0.0, 0.0, 1.0]; 4],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        triangle_materials: vec![0, 0],
-        ..Default::default()
-    };
     let nodes = vec![at(place, None), at(DVec3::new(0.0, 0.0, -DEPTH), Some(0)), at(DVec3::ZERO, Some(0))];
     let Local::Trs { translation: start, .. } = nodes[moving as usize].local else { unreachable!() };
     let keys = Keys::Translation(vec![start, start + direction * STEP * FRAMES_PER_SECOND]);
     let channel = Channel { node: moving, times: vec![0.0, 1.0], interpolation: Interpolation::Linear, keys };
     Scene {
-        meshes: vec![wall],
+        meshes: vec![wall()],
         materials: vec![Material::default()],
         nodes,
         instances: vec![Instance { mesh: 0, node: 1 }],
@@ -47,8 +39,12 @@ fn wall_and_camera(place: DVec3, moving: u32, direction: DVec3) -> Scene {
 
 /// Motion of all pixels in frame `frame`.
 fn motion(scene: Scene, frame: u32) -> Vec<[f32; 3]> {
+    motion_in(EXTENT, scene, frame)
+}
+
+fn motion_in([width, height]: [u32; 2], scene: Scene, frame: u32) -> Vec<[f32; 3]> {
     let gpu = common::gpu();
-    let unfiltered = Settings { technique: technique::find("unfiltered").unwrap(), ..settings(EXTENT[0], EXTENT[1]) };
+    let unfiltered = Settings { technique: technique::find("unfiltered").unwrap(), ..settings(width, height) };
     let mut renderer = Renderer::new(&gpu, scene, unfiltered).unwrap();
     (0..=frame).for_each(|_| renderer.render_frame().unwrap());
     renderer.output("motion").unwrap().unwrap().pixels
@@ -87,4 +83,25 @@ fn for_a_camera_that_rises_the_wall_was_further_up_in_the_picture_even_when_the_
 fn what_stands_still_has_no_motion() {
     let found = motion(wall_and_camera(DVec3::ZERO, 1, DVec3::ZERO), 2);
     assert_motion("standing wall", &found, [0.0; 3]);
+}
+
+/// Pixels that have moved, in pixels of a picture of 256x144, ascending; and the part of the picture that they are.
+fn speeds_at_256x144(name: &str) -> (Vec<f32>, f32) {
+    let motion = motion_in([128, 72], builtin(name), 2);
+    let mut speeds: Vec<f32> = motion.iter().map(|[x, y, _]| 2.0 * x.hypot(*y)).filter(|&speed| speed > 0.01).collect();
+    speeds.sort_by(f32::total_cmp);
+    let part = speeds.len() as f32 / motion.len() as f32;
+    (speeds, part)
+}
+
+#[test]
+fn moving_scenes_move_by_a_few_pixels_per_frame_and_only_what_should() {
+    // The lamp is a thin strip; the sphere has 0.14 of the picture's height; all that a flying camera sees moves, except for some pixel
+    // near the point that it flies to.
+    for (name, least, most) in [("cornell-light", 0.002, 0.02), ("cornell-object", 0.01, 0.05), ("hall-flight:10000", 0.98, 1.0)] {
+        let (speeds, part) = speeds_at_256x144(name);
+        assert!((least..=most).contains(&part), "{name}: {part} of the picture moves");
+        let typical = speeds[speeds.len() / 2];
+        assert!((1.0..6.0).contains(&typical), "{name}: {typical} pixels per frame");
+    }
 }

@@ -1,5 +1,8 @@
 //! The Cornell box: <https://www.graphics.cornell.edu/online/box/data.html>, its millimetres as metres, with the usual RGB fit of its spectra.
 //! Purely diffuse. The camera looks along +z, so +x is the picture's left.
+//!
+//! Two more have something that moves to the left, right and back again: 0.5 m/s, which is 3 to 4 pixels per frame at 30 frames per second and
+//! 144 pixels of height.
 
 use super::Options;
 use super::document::Document;
@@ -28,8 +31,49 @@ const LAMP_QUAD: Quad = [[343.0, 547.8, 227.0], [343.0, 547.8, 332.0], [213.0, 5
 /// Hides the lamp's back, so that renderers which emit on both sides agree with those which emit on one.
 const LAMP_BACK_HEIGHT: f32 = 547.81;
 
+/// Metres to either side.
+const SWING: f32 = 0.15;
+/// Seconds, there and back on both sides.
+const PERIOD: f32 = 1.2;
+
 pub fn make(_: &Options) -> Vec<u8> {
-    let mut document = Document::new("cornell");
+    build("cornell").document.into_glb()
+}
+
+/// The lamp moves below the ceiling.
+pub fn make_moving_light(_: &Options) -> Vec<u8> {
+    let CornellBox { mut document, lamp, .. } = build("cornell-light");
+    lamp.iter().for_each(|&node| swing(&mut document, node, Vec3::ZERO));
+    document.into_glb()
+}
+
+/// A sphere moves before the tall block and above the short one.
+pub fn make_moving_object(_: &Options) -> Vec<u8> {
+    let CornellBox { mut document, white, .. } = build("cornell-object");
+    let place = vec3(0.278, 0.4, 0.14);
+    let geometry = document.add_geometry(&Surface::sphere(0.07, 64, 32));
+    let mesh = document.add_mesh("sphere", &[(&geometry, white)]);
+    let node = document.add_node(json!({ "name": "sphere", "mesh": mesh, "translation": place.to_array() }));
+    swing(&mut document, node, place);
+    document.into_glb()
+}
+
+fn swing(document: &mut Document, node: usize, place: Vec3) {
+    let keys = [0.0, SWING, -SWING, 0.0].map(|offset| (place + Vec3::X * offset).to_array().to_vec());
+    document.animate(node, "translation", &[0.0, 0.25 * PERIOD, 0.75 * PERIOD, PERIOD], &keys);
+}
+
+/// The box under construction, and what some scene changes in it.
+struct CornellBox {
+    document: Document,
+    /// Material.
+    white: usize,
+    /// Nodes of the lamp and its back.
+    lamp: [usize; 2],
+}
+
+fn build(name: &str) -> CornellBox {
+    let mut document = Document::new(name);
     let white = document.add_material("white", lambert(WHITE));
     let green = document.add_material("green", lambert(GREEN));
     let red = document.add_material("red", lambert(RED));
@@ -39,7 +83,7 @@ pub fn make(_: &Options) -> Vec<u8> {
     lamp["extensions"]["KHR_materials_emissive_strength"] = json!({ "emissiveStrength": 15.0 });
     let lamp = document.add_material("lamp", lamp);
 
-    let objects: [(&str, Surface, usize); 9] = [
+    let objects: [(&str, Surface, usize); 7] = [
         ("floor", wall(FLOOR, Vec3::Y), white),
         ("ceiling", wall(CEILING, Vec3::NEG_Y), white),
         ("back wall", wall(BACK, Vec3::NEG_Z), white),
@@ -47,15 +91,15 @@ pub fn make(_: &Options) -> Vec<u8> {
         ("left wall", wall(LEFT, Vec3::NEG_X), red),
         ("short block", block(SHORT_TOP), white),
         ("tall block", block(TALL_TOP), white),
-        ("lamp back", wall(LAMP_QUAD.map(|[x, _, z]| [x, LAMP_BACK_HEIGHT, z]), Vec3::NEG_Y), black),
-        ("lamp", wall(LAMP_QUAD, Vec3::NEG_Y), lamp),
     ];
     for (name, surface, material) in &objects {
         document.add_object(name, surface, *material);
     }
+    let lamp_back = wall(LAMP_QUAD.map(|[x, _, z]| [x, LAMP_BACK_HEIGHT, z]), Vec3::NEG_Y);
+    let lamp = [document.add_object("lamp back", &lamp_back, black), document.add_object("lamp", &wall(LAMP_QUAD, Vec3::NEG_Y), lamp)];
     // 25 mm film behind a 35 mm lens.
     document.add_camera(vec3(0.278, 0.273, -0.8), vec3(0.278, 0.273, 0.0), 2.0 * (12.5f32 / 35.0).atan());
-    document.into_glb()
+    CornellBox { document, white, lamp }
 }
 
 /// Without KHR_materials_specular's factor of 0, a dielectric has a specular coat.

@@ -42,13 +42,27 @@ pub struct Options {
 /// The scene that is shown where none is named.
 pub const DEFAULT: &str = "cornell";
 
-pub static REGISTRY: [Builtin; 7] = [
+pub static REGISTRY: [Builtin; 10] = [
     Builtin {
         name: "cornell",
         help: "Cornell box with the classic dimensions, diffuse, one area light",
         triangles: None,
         environment: None,
         make: cornell::make,
+    },
+    Builtin {
+        name: "cornell-light",
+        help: "'cornell' with a lamp that moves below the ceiling, back and forth in 1.2 s",
+        triangles: None,
+        environment: None,
+        make: cornell::make_moving_light,
+    },
+    Builtin {
+        name: "cornell-object",
+        help: "'cornell' with a sphere that moves through it, back and forth in 1.2 s",
+        triangles: None,
+        environment: None,
+        make: cornell::make_moving_object,
     },
     Builtin {
         name: "furnace",
@@ -84,6 +98,13 @@ pub static REGISTRY: [Builtin; 7] = [
         triangles: Some(hall::TRIANGLES),
         environment: None,
         make: hall::make,
+    },
+    Builtin {
+        name: "hall-flight",
+        help: "'hall' from a camera that winds along the nave, past its columns, in 7 s",
+        triangles: Some(hall::TRIANGLES),
+        environment: None,
+        make: hall::make_flight,
     },
     Builtin {
         name: "still-life",

@@ -1,5 +1,6 @@
 //! A vaulted hall at night: many triangles, as many as one asks for, and many small lamps.
 
+mod flight;
 mod masonry;
 
 use self::masonry::{ARCADE_X, Arc, BAY, BAYS, CORNICE, IMPOST, LENGTH, Part, WALL_X};
@@ -21,8 +22,24 @@ const CANDLES: u32 = 8;
 /// The sculpture at the far end.
 const PLINTH: Vec3 = vec3(-0.2, 1.62, -8.6);
 
+const YFOV: f32 = 1.05;
+
 pub fn make(options: &Options) -> Vec<u8> {
-    let mut hall = Hall { document: Document::new("hall"), detail: 0.0, relief: 0.0 };
+    let mut document = build("hall", options);
+    document.add_camera(vec3(0.55, 1.65, -0.7), vec3(-0.25, 2.35, -9.0), YFOV);
+    document.into_glb()
+}
+
+/// The camera flies along the nave.
+pub fn make_flight(options: &Options) -> Vec<u8> {
+    let mut document = build("hall-flight", options);
+    flight::add_camera(&mut document, YFOV);
+    document.into_glb()
+}
+
+/// All but the camera.
+fn build(name: &str, options: &Options) -> Document {
+    let mut hall = Hall { document: Document::new(name), detail: 0.0, relief: 0.0 };
     let fixed = FixedParts::new();
     (hall.detail, hall.relief) = detail_for(u64::from(options.triangles).saturating_sub(fixed.triangles()));
     hall.add_masonry(&fixed);
@@ -30,8 +47,7 @@ pub fn make(options: &Options) -> Vec<u8> {
     hall.add_lamps(&fixed);
     hall.add_sculpture(&fixed);
     hall.add_lights();
-    hall.document.add_camera(vec3(0.55, 1.65, -0.7), vec3(-0.25, 2.35, -9.0), 1.05);
-    hall.document.into_glb()
+    hall.document
 }
 
 /// Detail whose triangles come nearest to `triangles`, and the depth of carving that it can show.
