@@ -60,7 +60,9 @@ fn generate(root: &Path, out: &Path) -> Result<(), CompileError> {
     let modules: Vec<(PathBuf, Vec<u32>)> =
         variants.par_iter().map(|variant| compile_if_changed(root, out, variant)).collect::<Result<_, _>>()?;
     let rows = variants.iter().zip(&modules).map(|(variant, (path, _))| {
-        format!("    Shader {{ stem: {:?}, structure: {:?}, spirv: include_bytes!({:?}) }},\n", variant.stem, variant.structure, path)
+        let Variant { stem, structure, precision, .. } = variant;
+        let precision = precision.map_or("None".to_owned(), |precision| format!("Some(Precision::{precision:?})"));
+        format!("    Shader {{ stem: {stem:?}, structure: {structure:?}, precision: {precision}, spirv: include_bytes!({path:?}) }},\n")
     });
     write(&out.join("shaders.rs"), format!("&[\n{}]", rows.collect::<String>()).as_bytes())?;
     write_shared(root, out, modules.iter().map(|(_, spirv)| spirv.as_slice()))?;

@@ -9,7 +9,7 @@ pub mod reflect;
 mod source;
 
 pub use reflect::{Binding, BindingKind, Reflection};
-pub use source::{Variant, find_variants, fingerprint, structure_defines};
+pub use source::{Precision, Variant, find_variants, fingerprint, structure_defines};
 
 use std::path::{Path, PathBuf};
 

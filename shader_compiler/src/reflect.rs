@@ -22,6 +22,8 @@ pub struct Binding {
     /// Of the variable, or of the block where the variable has none.
     pub name: String,
     pub kind: BindingKind,
+    /// Of a storage image, as its declaration has it: `rgba32f`. Empty for everything else.
+    pub format: String,
     /// An array without a size.
     pub unbounded: bool,
     /// Neither is restricted where the shader does not say `readonly` or `writeonly`. For images; buffers say it per member.
@@ -128,6 +130,7 @@ impl<'a> Types<'a> {
             binding: self.decoration(variable, Decoration::Binding).ok_or("a resource without a binding")?,
             name: name.copied().unwrap_or("").to_owned(),
             kind,
+            format: image_format(element),
             unbounded,
             readable: !self.is_decorated(variable, Decoration::NonReadable),
             writable: !self.is_decorated(variable, Decoration::NonWritable),
@@ -205,6 +208,14 @@ impl<'a> Types<'a> {
             Op::TypeArray => Ok(self.size(element(0))? * literal(&element(1).operands[0])),
             other => Err(format!("a push constant of type {other:?} is not supported")),
         }
+    }
+}
+
+/// Operand 6 of an image's type; `Unknown` where a sampled image or a declaration without a format has none.
+fn image_format(element: &Instruction) -> String {
+    match element.operands.get(6) {
+        Some(Operand::ImageFormat(format)) => format!("{format:?}").to_lowercase(),
+        _ => String::new(),
     }
 }
 

@@ -8,6 +8,34 @@ use std::path::{Path, PathBuf};
 /// A kernel that traces rays is compiled once per acceleration structure.
 const TRACE_INCLUDE: &str = "accel/trace.glsl";
 const STRUCTURES: &str = "accel/structures";
+/// A kernel that declares images in the frame's precision does so by this macro, and is compiled once per precision.
+const COLOR_FORMAT: &str = "COLOR_FORMAT";
+
+/// Of the frame's images and histories.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Precision {
+    Fp32,
+    Fp16,
+}
+
+impl Precision {
+    pub const ALL: [Precision; 2] = [Precision::Fp32, Precision::Fp16];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Precision::Fp32 => "fp32",
+            Precision::Fp16 => "fp16",
+        }
+    }
+
+    /// GLSL's format qualifier.
+    fn color_format(self) -> &'static str {
+        match self {
+            Precision::Fp32 => "rgba32f",
+            Precision::Fp16 => "rgba16f",
+        }
+    }
+}
 
 /// One compilation of one kernel.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -18,19 +46,21 @@ pub struct Variant {
     pub stem: String,
     /// File stem of the acceleration structure, for kernels that trace rays.
     pub structure: Option<String>,
+    /// For kernels with images in the frame's precision.
+    pub precision: Option<Precision>,
 }
 
 impl Variant {
-    /// For messages and file names: `paths/megakernel`, or `paths/megakernel+bvh`.
+    /// For messages and file names: the stem, then what sets it apart, as in `paths/megakernel+bvh+fp16`.
     pub fn name(&self) -> String {
-        match &self.structure {
-            Some(structure) => format!("{}+{structure}", self.stem),
-            None => self.stem.clone(),
-        }
+        let parts = [Some(self.stem.as_str()), self.structure.as_deref(), self.precision.map(Precision::name)];
+        parts.into_iter().flatten().collect::<Vec<_>>().join("+")
     }
 
     pub fn defines(&self) -> Vec<(String, String)> {
-        self.structure.as_deref().map(structure_defines).unwrap_or_default()
+        let structure = self.structure.as_deref().map(structure_defines).unwrap_or_default();
+        let format = self.precision.map(|precision| (COLOR_FORMAT.to_owned(), precision.color_format().to_owned()));
+        structure.into_iter().chain(format).collect()
     }
 }
 
@@ -54,7 +84,11 @@ pub fn find_variants(root: &Path) -> Result<Vec<Variant>, CompileError> {
         let stem = file.with_extension("").to_string_lossy().replace('\\', "/");
         let traces = transitive_includes(root, &path)?.contains(Path::new(TRACE_INCLUDE));
         let structures = if traces { structures.iter().cloned().map(Some).collect() } else { vec![None] };
-        variants.extend(structures.into_iter().map(|structure| Variant { file: file.clone(), stem: stem.clone(), structure }));
+        let precisions = if read(&path)?.contains(COLOR_FORMAT) { Precision::ALL.map(Some).to_vec() } else { vec![None] };
+        for structure in structures {
+            let variant = |&precision| Variant { file: file.clone(), stem: stem.clone(), structure: structure.clone(), precision };
+            variants.extend(precisions.iter().map(variant));
+        }
     }
     variants.sort_by_key(Variant::name);
     Ok(variants)

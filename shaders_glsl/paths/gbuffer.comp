@@ -3,6 +3,7 @@
 // Motion: where the point that a pixel sees was in the previous frame's image, with both cameras and both instance transforms.
 #include "accel/trace.glsl"
 #include "lib/rng.glsl"
+#include "lib/storage.glsl"
 #include "paths/hit.glsl"
 #include "paths/primary.glsl"
 
@@ -11,9 +12,9 @@ layout(local_size_x = 8, local_size_y = 4) in;
 /// World position relative to the frame's origin, metres; w: distance along the ray, negative where nothing was hit.
 layout(set = 1, binding = 0, rgba32f) writeonly uniform image2D position;
 /// Shading normal, towards the viewer; w: cosine between geometric and shading normal.
-layout(set = 1, binding = 1, rgba32f) writeonly uniform image2D normal;
+layout(set = 1, binding = 1, COLOR_FORMAT) writeonly uniform image2D normal;
 /// Diffuse albedo; w: roughness.
-layout(set = 1, binding = 2, rgba32f) writeonly uniform image2D albedo;
+layout(set = 1, binding = 2, COLOR_FORMAT) writeonly uniform image2D albedo;
 /// Pixels, from here to where it was; z: change of the distance to the camera, metres; w: 1 where it was in front of the camera.
 layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D motion;
 /// Instance, primitive, material, metalness as a float's bits; all ones where nothing was hit.

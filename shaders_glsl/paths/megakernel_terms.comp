@@ -5,18 +5,18 @@
 
 layout(local_size_x = 32) in;
 
-layout(set = 1, binding = 0, rgba32f) writeonly uniform image2D before;
-layout(set = 1, binding = 1, rgba32f) writeonly uniform image2D attenuation;
-layout(set = 1, binding = 2, rgba32f) writeonly uniform image2D diffuse_direct;
-layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D diffuse_indirect;
-layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D specular_direct;
-layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D specular_indirect;
+layout(set = 1, binding = 0, COLOR_FORMAT) writeonly uniform image2D before;
+layout(set = 1, binding = 1, COLOR_FORMAT) writeonly uniform image2D attenuation;
+layout(set = 1, binding = 2, COLOR_FORMAT) writeonly uniform image2D diffuse_direct;
+layout(set = 1, binding = 3, COLOR_FORMAT) writeonly uniform image2D diffuse_indirect;
+layout(set = 1, binding = 4, COLOR_FORMAT) writeonly uniform image2D specular_direct;
+layout(set = 1, binding = 5, COLOR_FORMAT) writeonly uniform image2D specular_indirect;
 layout(set = 1, binding = 6, r32ui) writeonly uniform uimage2D ray_count;
 
 /// A sample with a value that is not a number is no sample: it must not enter a history.
 vec4 finite_or_black(vec3 value) {
     bool finite = !any(isnan(value)) && !any(isinf(value));
-    return vec4(finite ? value : vec3(0.0), finite ? 1.0 : 0.0);
+    return storable(vec4(finite ? value : vec3(0.0), finite ? 1.0 : 0.0));
 }
 
 uint samples_of(uvec2 pixel) {
@@ -27,8 +27,8 @@ void write_pixel(uvec2 at, Terms terms, uint samples, uvec2 counts) {
     ivec2 pixel = ivec2(at);
     imageStore(before, pixel, finite_or_black(terms.before));
     imageStore(attenuation, pixel, finite_or_black(terms.attenuation));
-    imageStore(diffuse_direct, pixel, finite_or_black(terms.diffuse_direct));
-    imageStore(diffuse_indirect, pixel, finite_or_black(terms.diffuse_indirect));
+    imageStore(diffuse_direct, pixel, finite_or_black(received(terms.diffuse_direct, terms.attenuation)));
+    imageStore(diffuse_indirect, pixel, finite_or_black(received(terms.diffuse_indirect, terms.attenuation)));
     imageStore(specular_direct, pixel, finite_or_black(terms.specular_direct));
     imageStore(specular_indirect, pixel, finite_or_black(terms.specular_indirect));
     imageStore(ray_count, pixel, uvec4(pack_counts(counts)));

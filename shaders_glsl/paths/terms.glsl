@@ -13,6 +13,9 @@
 #ifndef PATHS_TERMS_GLSL
 #define PATHS_TERMS_GLSL
 
+#include "lib/storage.glsl"
+#include "shared/parameters.glsl"
+
 struct Terms {
     vec3 before;
     vec3 attenuation;
@@ -46,6 +49,17 @@ void add_term(inout Terms terms, uint term, float diffuse_weight, vec3 specular_
     }
 #endif
     terms.before += (terms.attenuation * diffuse_weight + specular_weight) * radiance;
+}
+
+const uint ALBEDO_DIVIDED = 1u;
+/// What is divided by instead of a smaller attenuation.
+const float LEAST_DIVISOR = 1e-3;
+
+/// A diffuse term for filters. With paths.albedo divided, as renderers have it that trace reflected radiance and know its albedo only
+/// afterwards: their product goes through an image, and is divided by the attenuation. That loses the precision of small products, and all
+/// of a channel that the surface does not reflect, although its neighbours might (Meijer, section 4.1). display/composite multiplies again.
+vec3 received(vec3 diffuse, vec3 attenuation) {
+    return ALBEDO == ALBEDO_DIVIDED ? stored(attenuation * diffuse) / max(attenuation, LEAST_DIVISOR) : diffuse;
 }
 
 #endif

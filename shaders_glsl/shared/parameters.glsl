@@ -35,6 +35,15 @@ layout(constant_id = 106) const uint ENERGY_COMPENSATION = 1;
 //@ textures.level cone cone|zero
 /// Texture level of detail: by ray cones, which follow the footprint of a path, or always the finest, which only many samples filter.
 layout(constant_id = 107) const uint TEXTURE_LEVEL = 0;
+//@ paths.albedo apart apart|divided
+/// Albedo at the filter vertex: kept apart and multiplied in after filters, or multiplied in while tracing, divided out for filters (by 0.001 at least), multiplied again. Divided loses channels of zero albedo and precision (Meijer, section 4.1).
+layout(constant_id = 120) const uint ALBEDO = 0;
+//@ accumulate.sum compensated compensated|plain
+/// Sum over frames: two words, the second for what rounding has lost, or one. Plain moves 32 bytes per pixel less (16 at fp16), and drifts over many frames.
+layout(constant_id = 121) const uint SUM = 0;
+//@ frame.precision fp32 fp32|fp16
+/// Images and histories, other than positions, motion and identities. fp16 halves their bytes; rounds to 11 bits, and clamps at 65504.
+layout(constant_id = 122) const uint PRECISION = 0;
 
 struct Parameters {
     //@ paths.max_bounces 8 0..64 bounces

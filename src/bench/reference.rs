@@ -144,7 +144,7 @@ impl Subject<'_> {
         hasher.update(format!("{extent:?} {parameters:?} {view:?} {fps} {}", self.frame).as_bytes());
         hasher.update(env!("PATHSPACE_HOST_CODE").as_bytes());
         for stem in ["paths/megakernel", "display/accumulate"] {
-            hasher.update(bytemuck::cast_slice(&load_shader(stem, "bvh")?));
+            hasher.update(bytemuck::cast_slice(&load_shader(stem, "bvh", parameters.precision())?));
         }
         Ok(hasher.finalize().to_hex()[..32].to_owned())
     }

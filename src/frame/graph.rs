@@ -5,7 +5,7 @@
 
 use super::globals::Globals;
 use crate::gpu::{Commands, ComputePipeline, DescriptorSet, Gpu, GpuError, Image, ImageInfo, SetLayout, Timer, load_shader, vk};
-use shader_compiler::{Binding, BindingKind};
+use shader_compiler::{Binding, BindingKind, Precision};
 use std::collections::HashSet;
 use std::ffi::CString;
 use std::sync::Arc;
@@ -19,6 +19,7 @@ pub struct FrameBuilder<'a> {
     gpu: &'a Gpu,
     globals: Arc<SetLayout>,
     structure: &'a str,
+    precision: Precision,
     constants: Vec<(u32, u32)>,
     extent: [u32; 2],
     images: Vec<(&'static str, Image)>,
@@ -54,13 +55,21 @@ enum Access {
 }
 
 impl<'a> FrameBuilder<'a> {
-    /// `structure`: stem of the acceleration structure that rays are traced in; `constants`: specialization of every pass;
-    /// `extent`: of the picture, pixels.
-    pub fn new(gpu: &'a Gpu, globals: &Globals, structure: &'a str, constants: Vec<(u32, u32)>, extent: [u32; 2]) -> Self {
+    /// `structure`: stem of the acceleration structure that rays are traced in; `precision`: of colour images;
+    /// `constants`: specialization of every pass; `extent`: of the picture, pixels.
+    pub fn new(
+        gpu: &'a Gpu,
+        globals: &Globals,
+        structure: &'a str,
+        precision: Precision,
+        constants: Vec<(u32, u32)>,
+        extent: [u32; 2],
+    ) -> Self {
         Self {
             gpu,
             globals: globals.layout().clone(),
             structure,
+            precision,
             constants,
             extent,
             images: Vec::new(),
@@ -83,6 +92,16 @@ impl<'a> FrameBuilder<'a> {
     pub fn image(&mut self, name: &'static str, format: vk::Format) -> Result<ImageHandle, GpuError> {
         self.images.push((name, self.gpu.create_image(name, ImageInfo::storage(format, self.extent))?));
         Ok(ImageHandle(self.images.len() - 1))
+    }
+
+    /// An image of radiance, or of anything else that the frame's precision is enough for, declared `COLOR_FORMAT` in shaders. What a
+    /// kernel stores there must go through lib/storage.glsl.
+    pub fn color_image(&mut self, name: &'static str) -> Result<ImageHandle, GpuError> {
+        let format = match self.precision {
+            Precision::Fp32 => vk::Format::R32G32B32A32_SFLOAT,
+            Precision::Fp16 => vk::Format::R16G16B16A16_SFLOAT,
+        };
+        self.image(name, format)
     }
 
     /// The next pass: a kernel by its stem below shaders_glsl/, over every pixel.
@@ -163,17 +182,19 @@ impl PassBuilder<'_, '_> {
     }
 
     /// # Errors
-    /// The declaration differs from the shader's: a variable without an image, an image without a variable, other access.
+    /// The declaration differs from the shader's: a variable without an image, an image without a variable, other access or format.
     pub fn add(self) -> Result<(), GpuError> {
         let frame = self.frame;
-        let spirv = load_shader(self.shader, frame.structure)?;
+        let spirv = load_shader(self.shader, frame.structure, frame.precision)?;
         let pipeline = ComputePipeline::new(frame.gpu, self.name, &spirv, &frame.globals, &self.constants)?;
         let set = DescriptorSet::new(pipeline.own_layout())?;
         let bindings: Vec<&Binding> = pipeline.reflection().bindings.iter().filter(|b| b.set == 1).collect();
         check(&bindings, &self.uses).map_err(|message| GpuError::Interface { shader: self.shader.to_owned(), message })?;
         for binding in bindings {
-            let (_, image, _) = self.uses.iter().find(|(variable, ..)| *variable == binding.name).expect("checked");
-            set.write_storage_image(binding.binding, &frame.images[image.0].1);
+            let (_, handle, _) = self.uses.iter().find(|(variable, ..)| *variable == binding.name).expect("checked");
+            let image = &frame.images[handle.0].1;
+            check_format(binding, image).map_err(|message| GpuError::Interface { shader: self.shader.to_owned(), message })?;
+            set.write_storage_image(binding.binding, image);
         }
         let barrier = frame.needs_barrier(&self.uses);
         let label = CString::new(self.name).expect("pass names have no zeros");
@@ -199,6 +220,13 @@ fn check(bindings: &[&Binding], uses: &[(&'static str, ImageHandle, Access)]) ->
     match uses.iter().find(|(variable, ..)| !bindings.iter().any(|b| b.name == *variable)) {
         Some((variable, ..)) => Err(format!("it has no '{variable}'")),
         None => Ok(()),
+    }
+}
+
+fn check_format(binding: &Binding, image: &Image) -> Result<(), String> {
+    match image.format_qualifier() {
+        qualifier if qualifier == binding.format => Ok(()),
+        qualifier => Err(format!("'{}' is declared {}, its image is {qualifier}", binding.name, binding.format)),
     }
 }
 

@@ -103,6 +103,19 @@ impl Image {
         u64::from(width) * u64::from(height) * texel_bytes(self.info.format)
     }
 
+    /// As GLSL names it.
+    pub fn format_qualifier(&self) -> &'static str {
+        match self.info.format {
+            vk::Format::R32G32B32A32_SFLOAT => "rgba32f",
+            vk::Format::R16G16B16A16_SFLOAT => "rgba16f",
+            vk::Format::R32G32B32A32_UINT => "rgba32ui",
+            vk::Format::R32G32_SFLOAT => "rg32f",
+            vk::Format::R32_SFLOAT => "r32f",
+            vk::Format::R32_UINT => "r32ui",
+            other => unreachable!("no pass stores to images of format {other:?}"),
+        }
+    }
+
     /// Device memory that it takes, all levels.
     pub fn allocated_bytes(&self) -> u64 {
         self.allocation.as_ref().map_or(0, |allocation| allocation.size())

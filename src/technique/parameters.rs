@@ -1,6 +1,7 @@
 //! What `--set key=value` can change. The table is generated from shaders_glsl/shared/parameters.glsl when built.
 
 use crate::shared;
+use shader_compiler::Precision;
 
 /// One switch or number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -116,6 +117,12 @@ impl Parameters {
         }
     }
 
+    /// Of the frame's images: `frame.precision`.
+    pub fn precision(&self) -> Precision {
+        let index = TABLE.iter().position(|parameter| parameter.key == "frame.precision").expect("it is in the table");
+        Precision::ALL[self.0[index] as usize]
+    }
+
     /// Ids and words of those that are specialization constants.
     pub fn constants(&self) -> Vec<(u32, u32)> {
         let constant = |(parameter, &value): (&Parameter, &f64)| match parameter.place {
@@ -194,6 +201,15 @@ mod tests {
         assert_eq!(parameters.fields().lod_bias, -1.5);
         parameters.set("paths.direct", "bsdf").unwrap();
         assert!(parameters.constants().contains(&(103, 2)));
+    }
+
+    #[test]
+    fn every_precision_is_a_choice_by_its_name() {
+        for precision in Precision::ALL {
+            let mut parameters = Parameters::default();
+            parameters.set("frame.precision", precision.name()).unwrap();
+            assert_eq!(parameters.precision(), precision);
+        }
     }
 
     #[test]

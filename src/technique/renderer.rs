@@ -53,7 +53,7 @@ impl Renderer {
         let info = GlobalsInfo { textures, bind_structure: &bind_structure, frames_in_flight: FRAMES_IN_FLIGHT };
         let globals = Globals::new(gpu, &info)?;
         let constants = [prepared.effects.specialization(), settings.parameters.constants(), prepared.structure.constants()].concat();
-        let mut frame = FrameBuilder::new(gpu, &globals, prepared.entry.stem, constants, settings.extent);
+        let mut frame = FrameBuilder::new(gpu, &globals, prepared.entry.stem, settings.parameters.precision(), constants, settings.extent);
         let gbuffer = settings.outputs.iter().any(|name| gbuffer::OUTPUTS.contains(&name.as_str()));
         let picture = (technique.passes)(&mut frame, PassOptions { gbuffer })?;
         let graph = frame.build();
@@ -224,6 +224,10 @@ impl Renderer {
         let [width, height] = image.info().extent;
         let pixels = match image.info().format {
             vk::Format::R32_UINT => self.gpu.download_image::<u32>(image)?.into_iter().map(|v| [v as f32; 3]).collect(),
+            vk::Format::R16G16B16A16_SFLOAT => {
+                let texels: Vec<[half::f16; 4]> = self.gpu.download_image(image)?;
+                texels.into_iter().map(|[r, g, b, _]| [r, g, b].map(half::f16::to_f32)).collect()
+            }
             vk::Format::R32G32B32A32_UINT => {
                 let texels: Vec<[u32; 4]> = self.gpu.download_image(image)?;
                 texels.into_iter().map(|[x, y, z, _]| [x as f32, y as f32, z as f32]).collect()

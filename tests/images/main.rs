@@ -9,6 +9,7 @@ mod exact;
 mod motion;
 mod references;
 mod shared_scenes;
+mod switches;
 mod terms;
 mod textures;
 mod worlds;

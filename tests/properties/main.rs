@@ -22,3 +22,4 @@ mod scene_shared;
 mod shader_lib_bsdf;
 mod shader_lib_functions;
 mod shader_lib_sampler;
+mod shader_lib_storage;
