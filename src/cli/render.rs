@@ -10,7 +10,7 @@ use crate::display::{ExrContents, ToneCurve, ToneMapping};
 use crate::gpu::{DeviceOptions, Gpu};
 use crate::scene::{CameraView, Environment, Scene, source};
 use crate::technique::{self, Parameters, Renderer, Settings, Technique, ViewChoice};
-use anyhow::{Context, anyhow};
+use anyhow::{Context, anyhow, bail};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -66,7 +66,7 @@ pub struct Args {
     #[arg(long, value_name = "F.exr|F.hdr", value_parser = arguments::environment, conflicts_with = "background")]
     pub environment: Option<PathBuf>,
     /// Constant radiance seen by rays that leave the scene, W/(sr m^2)
-    #[arg(long, value_name = "r,g,b", value_parser = arguments::radiance)]
+    #[arg(long, value_name = "r,g,b", value_parser = arguments::radiance, allow_hyphen_values = true)]
     pub background: Option<[f32; 3]>,
     /// Also write what a pass put out, such as normal=normal.exr; an unknown name lists them all
     #[arg(long, value_name = "NAME=OUT.exr", value_parser = arguments::named_exr)]
@@ -124,6 +124,7 @@ impl Args {
 pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     let technique = technique::find(&args.technique).ok_or_else(|| unknown_technique(&args.technique))?;
     let parameters = args.parameters(technique)?;
+    let view = args.view()?;
     super::output::check_writable(args.outputs())?;
     let scene = args.load_scene()?;
     let gpu = Gpu::open(&DeviceOptions { device: args.device.clone(), ..Default::default() })?;
@@ -138,7 +139,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         merge_static: true,
         seed: args.seed,
         fps: args.fps,
-        view: args.view(),
+        view,
         outputs: args.aov.iter().map(|(name, _)| name.clone()).collect(),
     };
     let (mut budget, settings) = match args.wish() {
@@ -228,10 +229,13 @@ impl Args {
         Ok(scene)
     }
 
-    fn view(&self) -> ViewChoice {
-        let (Some(eye), Some(target)) = (self.eye, self.target) else { return ViewChoice::Scene(self.camera.clone()) };
+    fn view(&self) -> anyhow::Result<ViewChoice> {
+        let (Some(eye), Some(target)) = (self.eye, self.target) else { return Ok(ViewChoice::Scene(self.camera.clone())) };
+        if eye == target {
+            bail!("--eye and --target are the same point: there is no direction to look in");
+        }
         let place = |point: [f32; 3]| DVec3::from_array(point.map(f64::from));
-        ViewChoice::Fixed(CameraView::look_at(place(eye), place(target), self.vfov.unwrap_or(45.0).to_radians()))
+        Ok(ViewChoice::Fixed(CameraView::look_at(place(eye), place(target), self.vfov.unwrap_or(45.0).to_radians())))
     }
 
     fn write(&self, renderer: &mut Renderer, spp: u32, frames: u32) -> anyhow::Result<()> {

@@ -38,7 +38,11 @@ impl Gpu {
         // SAFETY: the allocation was made for this buffer's requirements.
         let bound = unsafe { self.raw().bind_buffer_memory(raw, allocation.memory(), allocation.offset()) };
         buffer.allocation = Some(allocation);
-        bound.context(&format!("bind memory of buffer '{name}'"))?;
+        bound.map_err(|result| GpuError::Memory {
+            what: format!("buffer '{name}'"),
+            bytes: requirements.size,
+            message: result.to_string(),
+        })?;
         // SAFETY: the buffer has memory and was created for device addresses.
         buffer.address = unsafe { self.raw().get_buffer_device_address(&vk::BufferDeviceAddressInfo::default().buffer(raw)) };
         self.set_name(raw, name);

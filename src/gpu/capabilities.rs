@@ -32,6 +32,8 @@ pub struct Capabilities {
     pub subgroup_size: u32,
     pub max_storage_buffer_range: u64,
     pub max_workgroup_invocations: u32,
+    /// Texels along one side of an image.
+    pub max_image_side: u32,
     pub max_textures: u32,
     /// Of one texel buffer.
     pub max_texels: u32,
@@ -77,6 +79,7 @@ impl Capabilities {
             subgroup_size: subgroup.subgroup_size,
             max_storage_buffer_range: limits.max_storage_buffer_range.into(),
             max_workgroup_invocations: limits.max_compute_work_group_invocations,
+            max_image_side: limits.max_image_dimension2_d,
             max_textures: limits.max_per_stage_descriptor_sampled_images.min(limits.max_per_stage_descriptor_samplers),
             max_texels: limits.max_texel_buffer_elements,
             device_local_memory: device_local_memory(instance, device),

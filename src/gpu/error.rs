@@ -15,8 +15,10 @@ pub enum GpuError {
     NoValidationLayer,
     #[error("Vulkan could not {what}: {result}")]
     Vulkan { what: String, result: vk::Result },
-    #[error("no memory for {what} ({bytes} bytes): {message}")]
+    #[error("no memory for {what} ({bytes} bytes): {message}; choose a smaller --size, or a smaller scene")]
     Memory { what: String, bytes: u64, message: String },
+    #[error("'{what}' has {width}x{height} texels, and device '{device}' takes at most {most} a side; choose a smaller --size or texture")]
+    TooLarge { what: String, width: u32, height: u32, device: String, most: u32 },
     #[error("there is no shader '{0}'")]
     UnknownShader(String),
     #[error(transparent)]

@@ -1,5 +1,6 @@
 //! Storage images that passes write, and sampled textures.
 
+use super::capabilities::Capabilities;
 use super::device::Gpu;
 use super::error::{Context, GpuError};
 use ash::vk;
@@ -45,6 +46,10 @@ impl Gpu {
 
     fn image_with_usage(&self, name: &str, info: ImageInfo, usage: vk::ImageUsageFlags) -> Result<Image, GpuError> {
         let [width, height] = info.extent;
+        let Capabilities { max_image_side: most, name: device, .. } = self.capabilities();
+        if width.max(height) > *most {
+            return Err(GpuError::TooLarge { what: name.to_owned(), width, height, device: device.clone(), most: *most });
+        }
         let create = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(info.format)
@@ -63,7 +68,11 @@ impl Gpu {
         // SAFETY: the allocation was made for this image's requirements.
         let bound = unsafe { self.raw().bind_image_memory(raw, allocation.memory(), allocation.offset()) };
         image.allocation = Some(allocation);
-        bound.context(&format!("bind memory of image '{name}'"))?;
+        bound.map_err(|result| GpuError::Memory {
+            what: format!("image '{name}'"),
+            bytes: requirements.size,
+            message: result.to_string(),
+        })?;
         let view = vk::ImageViewCreateInfo::default()
             .image(raw)
             .view_type(vk::ImageViewType::TYPE_2D)

@@ -37,7 +37,11 @@ impl Instance {
             info = info.enabled_layer_names(&layers).enabled_extension_names(&extensions).push_next(&mut features);
         }
         // SAFETY: every pointer of `info` outlives the call.
-        let raw = unsafe { entry.create_instance(&info, None) }.context("create an instance")?;
+        let raw = match unsafe { entry.create_instance(&info, None) } {
+            // So the loader says that it has found no driver.
+            Err(vk::Result::ERROR_INCOMPATIBLE_DRIVER) => return Err(GpuError::NoDevice),
+            other => other.context("create an instance")?,
+        };
         let messages = Arc::new(Messages::default());
         let debug = if validation { Some(create_messenger(&entry, &raw, &messages)?) } else { None };
         Ok(Self { _entry: entry, raw, debug, messages })

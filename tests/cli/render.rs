@@ -106,7 +106,7 @@ fn a_machine_without_a_vulkan_device_is_told_so() {
         let output = command.args(arguments).output().unwrap();
         let message = String::from_utf8_lossy(&output.stderr).to_lowercase();
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
-        assert!(message.starts_with("error: ") && message.contains("vulkan"), "{arguments:?}: {message}");
+        assert!(message.starts_with("error: ") && message.contains("install a driver"), "{arguments:?}: {message}");
         assert!(files(directory.path()).is_empty());
     }
 }

@@ -22,7 +22,7 @@ fn numbers_that_are_not_finite_are_refused() {
     refused(&["-o", "a.png", "--eye", "0,nan,0", "--target", "0,0,0"], "three finite numbers");
     refused(&["-o", "a.png", "--eye", "0,0", "--target", "0,0,0"], "three finite numbers");
     refused(&["-o", "a.png", "--background", "1,inf,1"], "three finite numbers");
-    refused(&["-o", "a.png", "--background=-1,0,0"], "at least 0");
+    refused(&["-o", "a.png", "--background", "-1,0,0"], "at least 0");
     refused(&["-o", "a.png", "--exposure", "nan"], "finite number");
     refused(&["-o", "a.png", "--fps", "0"], "above 0");
     refused(&["-o", "a.png", "--eye", "0,0,0", "--target", "0,0,1", "--vfov", "180"], "below 180");
@@ -32,6 +32,7 @@ fn numbers_that_are_not_finite_are_refused() {
 fn half_a_camera_or_two_are_refused() {
     refused(&["-o", "a.png", "--eye", "0,0,0"], "--target");
     refused(&["-o", "a.png", "--vfov", "30"], "--eye");
+    refused(&["-o", "a.png", "--eye", "0,1,0", "--target", "0,1,0"], "--eye and --target are the same point");
     refused(&["-o", "a.png", "--camera", "x", "--eye", "0,0,0", "--target", "0,0,1"], "cannot be used with");
     refused(&["-o", "a.png", "--environment", "a.hdr", "--background", "1,1,1"], "cannot be used with");
 }

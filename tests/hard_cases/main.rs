@@ -9,5 +9,6 @@ mod accel_extremes;
 mod accel_ray_offset;
 mod accel_watertight;
 mod cli_no_ray_query;
+mod gpu_limits;
 mod scene_bad_input;
 mod scene_malformed;
