@@ -84,8 +84,10 @@ impl Structure for RayQuery {
             .dst_acceleration_structure(top.structure.raw)
             .scratch_data(vk::DeviceOrHostAddressKHR { device_address: top.scratch.address });
         let range = [vk::AccelerationStructureBuildRangeInfoKHR::default().primitive_count(instances.len() as u32)];
-        // SAFETY: structure, scratch and instances were made for this many instances and live as long as the slot.
-        unsafe { top.structure.functions.cmd_build_acceleration_structures(commands.raw(), &[info], &[&range]) };
+        // Not through ash's function of this name, which allocates: this is called every frame.
+        let build = top.structure.functions.fp().cmd_build_acceleration_structures_khr;
+        // SAFETY: structure, scratch and instances were made for this many instances and live as long as the slot; one range for one geometry.
+        unsafe { build(commands.raw(), 1, &info, &range.as_ptr()) };
         commands.barrier(Stage::ACCELERATION_STRUCTURE_BUILD_KHR, Stage::COMPUTE_SHADER);
     }
 

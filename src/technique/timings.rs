@@ -6,6 +6,10 @@ use crate::metrics::statistics::quantile;
 use serde::Serialize;
 use std::time::Instant;
 
+/// Room that is made at the beginning, so that frames allocate nothing: 18 minutes at 60 Hz, 512 KiB per pass, of which only what is
+/// written takes memory.
+const FRAMES_WITHOUT_ALLOCATION: usize = 1 << 16;
+
 /// Gathers figures frame by frame.
 #[derive(Debug, Default)]
 pub struct Recorder {
@@ -94,7 +98,8 @@ impl MemoryUse {
 
 impl Recorder {
     pub fn new(names: Vec<&'static str>) -> Self {
-        Self { passes: vec![Vec::new(); names.len()], names, ..Default::default() }
+        let room = || Vec::with_capacity(FRAMES_WITHOUT_ALLOCATION);
+        Self { passes: names.iter().map(|_| room()).collect(), names, frames: room(), cpu: room() }
     }
 
     /// GPU times of one frame, one per pass, or none where the device has no timestamps.
