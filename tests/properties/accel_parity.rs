@@ -93,9 +93,10 @@ fn check_against_each_other(gpu: &TestGpu, name: &str, scene: Scene, count: usiz
 #[test]
 fn structures_give_the_same_hits_on_a_million_rays() {
     let gpu = common::gpu();
-    check_against_each_other(&gpu, "hall", built_in("hall:80000"), 1 << 20);
-    check_against_each_other(&gpu, "instanced", instanced(), 1 << 18);
-    check_against_each_other(&gpu, "cornell", built_in("cornell"), 1 << 18);
+    for spec in ["cornell", "furnace", "material", "hall:80000"] {
+        check_against_each_other(&gpu, spec, built_in(spec), 1 << 20);
+    }
+    check_against_each_other(&gpu, "instanced", instanced(), 1 << 20);
 }
 
 /// Devices with few texels, such as SwiftShader, read nodes and triangles by address.
