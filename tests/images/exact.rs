@@ -7,13 +7,13 @@ use pathspace::scene::{CameraView, Environment, Instance, Light, LightKind, Loca
 use pathspace::technique::ViewChoice;
 use std::f32::consts::PI;
 
-fn node(translation: DVec3) -> Node {
+pub fn node(translation: DVec3) -> Node {
     let local = Local::Trs { translation, rotation: glam::DQuat::IDENTITY, scale: DVec3::ONE };
     Node { name: String::new(), parent: None, local }
 }
 
 /// A square of `half` metres around the origin in the xz plane, facing up, with a Lambert albedo of 1/2.
-fn floor(half: f32) -> Scene {
+pub fn floor(half: f32) -> Scene {
     let material = Material { base_color: [0.5, 0.5, 0.5, 1.0], metallic: 0.0, specular: 0.0, ..Default::default() };
     let mesh = Mesh {
         positions: vec![[-half, 0.0, -half], [-half, 0.0, half], [half, 0.0, half], [half, 0.0, -half]],

@@ -10,6 +10,7 @@ mod motion;
 mod references;
 mod shared_scenes;
 mod switches;
+mod surfaces;
 mod terms;
 mod textures;
 mod worlds;
