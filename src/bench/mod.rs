@@ -9,6 +9,7 @@ pub mod plan;
 mod provenance;
 pub mod record;
 pub mod reference;
+pub mod report;
 pub mod roofline;
 pub mod runner;
 mod shots;

@@ -11,6 +11,7 @@ pub mod inspect;
 pub mod output;
 pub mod progress;
 pub mod render;
+pub mod report;
 
 use anyhow::Context;
 use clap::Parser;
@@ -46,6 +47,7 @@ enum Command {
     Devices(devices::Args),
     Diff(diff::Args),
     Bench(bench::Args),
+    Report(report::Args),
 }
 
 impl Command {
@@ -56,6 +58,7 @@ impl Command {
             Command::Devices(args) => devices::run(args),
             Command::Diff(args) => diff::run(args),
             Command::Bench(args) => bench::run(args),
+            Command::Report(args) => report::run(args),
         }
     }
 }

@@ -1,0 +1,4 @@
+// Everything has been declared: draw what the address asks for.
+"use strict";
+
+report.state.start();
