@@ -7,11 +7,12 @@
   const winners = (row) => {
     if (!row.best.length) return make("span", { class: "faint" }, "none");
     const names = row.best.map((index) => make("div", {}, data.points[index].label));
-    return row.best.length > 1 ? [names, report.tie()] : names;
+    if (row.best.length > 1) names.at(-1).append(" ", report.tie());
+    return names;
   };
   const figures = (row, key, unit) => row.best.map((index) => make("div", {}, report.interval(data.points[index].figures[key], unit)));
   const runnerUp = (row, key, unit) =>
-    row.next == null ? null : [make("div", {}, data.points[row.next].label), make("div", { class: "faint" }, report.interval(data.points[row.next].figures[key], unit))];
+    row.next == null ? null : [make("div", {}, data.points[row.next].label), make("div", {}, report.interval(data.points[row.next].figures[key], unit))];
 
   function equalTime(view, metric) {
     const kind = report.figureKind(metric);

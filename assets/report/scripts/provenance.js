@@ -21,6 +21,7 @@
       ["suites", list(points.map((point) => point.suite))],
       ["scene", `${view.scene}${view.source === view.scene ? "" : `, ${view.source}`}, ${view.moves} moves`],
       ["acceleration structure", list(points.map((point) => point.point.trace))],
+      ["frames per setting, the last measured", list(points.map((point) => point.point.frames))],
       ["seeds per setting", between(d3.extent(points, (point) => point.seeds))],
       ["reference", `${between(spp)} samples per pixel, relative standard error ${between(errors)}`],
       ["measured", between([times[0], times.at(-1)], String)],

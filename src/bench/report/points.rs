@@ -48,13 +48,14 @@ impl From<&Figure> for Span {
 pub fn collect<'a>(merged: &[&'a Measured], pictures: &mut PictureSet) -> Result<(Vec<Run<'a>>, Vec<PointData<'a>>), ReportError> {
     let mut runs: Vec<Run> = Vec::new();
     let mut points = Vec::new();
+    let named = Named::of(merged);
     for Measured { record, folder } in merged {
         let known = runs.iter().position(|run| run_key(run.provenance) == run_key(&record.provenance));
         let run = known.unwrap_or_else(|| {
             runs.push(Run { provenance: &record.provenance });
             runs.len() - 1
         });
-        let label = label(&record.point);
+        let label = named.label(&record.point);
         let pictures = pictures.add(&record.pictures, folder, &format!("{} ({label})", record.point.scene))?;
         points.push(data(record, run, label, pictures));
     }
@@ -77,25 +78,42 @@ fn data(record: &Record, run: usize, label: String, pictures: PictureIds) -> Poi
     }
 }
 
-/// What tells a point from the others of its scene and size, such as `unfiltered, 4 spp, 16 frames, clamp=8`.
-fn label(point: &Point) -> String {
-    let mut parts = vec![point.technique.clone(), format!("{} spp", point.spp)];
-    if point.frames > 1 {
-        parts.push(format!("{} frames", point.frames));
+/// What labels have to name because it is not the same everywhere.
+struct Named {
+    frames: bool,
+    trace: bool,
+}
+
+impl Named {
+    fn of(merged: &[&Measured]) -> Named {
+        let points = || merged.iter().map(|measured| &measured.record.point);
+        let first = points().next();
+        Named {
+            frames: points().any(|point| Some(point.frames) != first.map(|first| first.frames)),
+            trace: points().any(|point| Some(&point.trace) != first.map(|first| &first.trace)),
+        }
     }
-    if !point.trace.is_empty() {
-        parts.push(point.trace.clone());
+
+    /// What tells a point from the others of its scene and size, such as `unfiltered, 4 spp, 16 frames, clamp=8`.
+    fn label(&self, point: &Point) -> String {
+        let mut parts = vec![point.technique.clone(), format!("{} spp", point.spp)];
+        if self.frames {
+            parts.push(format!("{} frame{}", point.frames, if point.frames == 1 { "" } else { "s" }));
+        }
+        if self.trace {
+            parts.push(point.trace.clone());
+        }
+        parts.extend(point.settings.iter().map(|(key, value)| format!("{key}={value}")));
+        if point.all_effects {
+            parts.push("all effects".to_owned());
+        }
+        if let Some(switch) = &point.switch
+            && !point.settings.contains_key(&switch.key)
+        {
+            parts.push(format!("{}={}", switch.key, switch.value));
+        }
+        parts.join(", ")
     }
-    parts.extend(point.settings.iter().map(|(key, value)| format!("{key}={value}")));
-    if point.all_effects {
-        parts.push("all effects".to_owned());
-    }
-    if let Some(switch) = &point.switch
-        && !point.settings.contains_key(&switch.key)
-    {
-        parts.push(format!("{}={}", switch.key, switch.value));
-    }
-    parts.join(", ")
 }
 
 #[cfg(test)]
@@ -104,13 +122,16 @@ mod tests {
     use crate::bench::report::fixtures::{measured, switched};
 
     #[test]
-    fn labels_name_all_that_was_set() {
+    fn labels_name_all_that_was_set_and_what_differs() {
         let mut base = measured("a", "unfiltered", 4, 1.0, 0.1);
-        assert_eq!(label(&base.record.point), "unfiltered, 4 spp, bvh");
+        assert_eq!(Named::of(&[&base]).label(&base.record.point), "unfiltered, 4 spp");
+        let other = base.clone();
         base.record.point.frames = 16;
         base.record.point.settings.insert("clamp".to_owned(), "8".to_owned());
-        let switched = switched("b", &base, "mis", "0", 1.0, 0.1);
-        assert_eq!(label(&switched.record.point), "unfiltered, 4 spp, 16 frames, bvh, clamp=8, mis=0");
+        let mut switched = switched("b", &base, "mis", "0", 1.0, 0.1);
+        assert_eq!(Named::of(&[&other, &switched]).label(&switched.record.point), "unfiltered, 4 spp, 16 frames, clamp=8, mis=0");
+        switched.record.point.trace = "ray-query".to_owned();
+        assert_eq!(Named::of(&[&base, &switched]).label(&switched.record.point), "unfiltered, 4 spp, ray-query, clamp=8, mis=0");
     }
 
     #[test]
