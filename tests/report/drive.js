@@ -34,6 +34,9 @@
       choose("choose-metric", metric);
       check(`${metric} is another plot`, dots().length === 12 && byId("error-plot").innerHTML !== before, dots().length);
     }
+    choose("choose-metric", "bias2");
+    check("estimates below 0 are told", byId("metric-help").textContent.includes("Triangles") && byId("point-table").textContent.includes("−0.0"), byId("metric-help").textContent);
+    choose("choose-metric", "temporal");
     check("the address knows the metric", location.hash.includes("metric=temporal"), location.hash);
     choose("choose-metric", "flip");
   }

@@ -47,7 +47,7 @@ report.interval = function interval(span, unit = "") {
   if (!span) return null;
   const { make, number } = report;
   const value = number(span.value) + (unit ? ` ${unit}` : "");
-  return span.low === span.high ? [value] : [value, " ", make("span", { class: "range" }, `${number(span.low)}–${number(span.high)}`)];
+  return span.low === span.high ? [value] : [value, " ", make("span", { class: "range" }, `${number(span.low)}${span.low < 0 ? " to " : "–"}${number(span.high)}`)];
 };
 
 report.figureKind = (key) => report.data.figures.find((kind) => kind.key === key);

@@ -30,7 +30,7 @@
     ].join("\n");
     const margin = Math.min(420, 20 + 7 * d3.max(points, (point) => point.label.length));
     return Plot.plot({
-      width: 1060, height: 70 + 30 * points.length, marginLeft: margin, marginRight: 30, ariaLabel: "Milliseconds per pass",
+      width: 1140, height: 80 + 30 * points.length, marginLeft: margin, marginRight: 30, marginBottom: 40, ariaLabel: "Milliseconds per pass",
       x: { label: "ms per frame →", grid: true }, y: { label: null, domain: points.map((point) => point.label), padding: 0.25 },
       color: { domain: names, range: [...d3.schemeTableau10, ...d3.schemeSet2, ...d3.schemeSet3], legend: true },
       marks: [
@@ -51,13 +51,14 @@
     const prediction = (key) => ({
       title: make("span", {}, key.slice(PREDICTION.length), make("br"), "prediction, ms"), help: "predicted, not measured", number: true, of: figure(key),
     });
-    return report.table(null, [
-      { title: "setting", of: (point) => point.label },
+    const columns = [
       column("frame_ms"), column("frame_ms_p95", ({ value }) => number(value)), column("cpu_ms", ({ value }) => number(value)),
       column("first_frame_ms", ({ value }) => number(value)), column("rays_per_pixel", ({ value }) => number(value)),
       column("bytes_read", count), column("bytes_written", count), column("bandwidth", ({ value }) => number(value)), column("memory_bytes", count),
       ...predicted.map(prediction),
-    ], points);
+    ];
+    const measured = columns.filter((column) => points.some((point) => column.of(point) != null));
+    return report.table(null, [{ title: "setting", of: (point) => point.label }, ...measured], points);
   }
 
   function draw(view) {

@@ -57,12 +57,12 @@
     ];
   }
 
-  function scales(kind) {
+  function scales(kind, small) {
     const unit = kind.unit ? ` (${kind.unit})` : "";
     const arrow = { less: "↓ less is better", more: "↑ more is better", one: "1 is best" }[kind.better];
     return {
-      x: { type: "log", label: "ms per frame →", tickFormat: "~g", nice: true },
-      y: { type: isLogarithmic(kind) ? "log" : "linear", label: `${kind.name}${unit}, ${arrow}`, tickFormat: "~g", nice: true, zero: false },
+      x: { type: "log", label: "ms per frame →", tickFormat: "~g", inset: small ? 6 : 14 },
+      y: { type: isLogarithmic(kind) ? "log" : "linear", label: `${kind.name}${unit}, ${arrow}`, tickFormat: "~g", inset: small ? 6 : 14 },
       symbol: { type: "identity" },
       color: { type: "identity" },
     };
@@ -70,7 +70,7 @@
 
   /** Dots take part in the order of the keyboard, and open their picture. */
   function makeDotsButtons(svg, dots) {
-    const ordered = [...svg.querySelectorAll("g.dots path, g.dots circle, .dots path, .dots circle")];
+    const ordered = [...svg.querySelectorAll(".dots path, .dots circle")];
     ordered.forEach((element) => {
       const dot = dots[element.__data__];
       if (!dot) return;
@@ -90,10 +90,11 @@
   function draw(view, metric) {
     const kind = report.figureKind(metric);
     const dots = dotsOf(view, metric, document.getElementById("show-switches").checked);
-    document.getElementById("metric-help").textContent = `${kind.name}: ${kind.help}.`;
+    const unseen = isLogarithmic(kind) && dots.some((dot) => dot.error.value <= 0);
+    document.getElementById("metric-help").textContent = `${kind.name}: ${kind.help}.${unseen ? " Triangles: estimated at 0 or less, which the axis cannot show." : ""}`;
     if (!dots.length) return report.fill("error-plot", make("p", { class: "faint" }, `${kind.name} was not measured here.`));
     const svg = Plot.plot({
-      width: 1060, height: 480, marginLeft: 60, marginRight: 30, grid: true, ...scales(kind), marks: marks(view, metric, dots, false),
+      width: 1140, height: 480, marginLeft: 60, marginRight: 30, marginBottom: 40, grid: true, ...scales(kind, false), marks: marks(view, metric, dots, false),
       ariaLabel: `${kind.name} against milliseconds per frame, ${state.sceneName(view)}`,
     });
     makeDotsButtons(svg, dots);
@@ -104,8 +105,9 @@
     const kind = report.figureKind(metric);
     const dots = dotsOf(view, metric, false);
     const name = state.sceneName(view);
+    const shared = scales(kind, true);
     const svg = dots.length && Plot.plot({
-      width: 250, height: 170, marginLeft: 40, ...scales(kind), x: { ...scales(kind).x, label: null, ticks: 3 }, y: { ...scales(kind).y, label: null, ticks: 4 },
+      width: 250, height: 170, marginLeft: 45, ...shared, x: { ...shared.x, label: null, ticks: 3 }, y: { ...shared.y, label: null, ticks: 4 },
       marks: marks(view, metric, dots, true), ariaLabel: `${kind.name} against milliseconds, ${name}`,
     });
     const button = make("button", { type: "button", "aria-pressed": String(name === state.chosen.scene), onclick: () => state.choose({ scene: name }) }, name);

@@ -26,7 +26,7 @@
     const samples = sides.flatMap((side) => luminance(loaded[side]).map((value, pixel) => ({ pixel, value, side: names[side] })));
     return samples.length
       ? Plot.plot({
-          width: 1060, height: 200, marginLeft: 60, grid: true, ariaLabel: `luminance along ${line.direction} ${line.at}`,
+          width: 1140, height: 200, marginLeft: 60, grid: true, ariaLabel: `luminance along ${line.direction} ${line.at}`,
           x: { label: `pixel of ${line.direction} ${line.at} →` }, y: { label: "↑ luminance" },
           color: { domain: sides.map((side) => names[side]), range: sides.map((side) => colors[side]), legend: true },
           marks: [Plot.lineY(samples, { x: "pixel", y: "value", stroke: "side", strokeWidth: 1.25 })],

@@ -15,7 +15,7 @@
   // Which picture
 
   const withPictures = () => state.pointsOf(state.view).filter((point) => point.pictures.picture != null);
-  const labelOf = (side) => (shown[side] === REFERENCE ? REFERENCE : data.points[shown[side]]?.label ?? "no picture");
+  const labelOf = (side) => (shown[side] === REFERENCE ? "reference picture" : data.points[shown[side]]?.label ?? "no picture");
 
   function idOf(side, heat) {
     const point = shown[side] === REFERENCE ? withPictures()[0] : data.points[shown[side]];
@@ -157,7 +157,7 @@
   // Controls
 
   function pictureSelect(side) {
-    const listed = [...withPictures().map((point) => [point.index, point.label]), [REFERENCE, REFERENCE]];
+    const listed = [...withPictures().map((point) => [point.index, point.label]), [REFERENCE, "reference picture"]];
     const onchange = (event) => {
       shown[side] = event.target.value === REFERENCE ? REFERENCE : Number(event.target.value);
       refresh();
