@@ -6,8 +6,12 @@
 // never swapped; and an edge function of exactly zero counts as inside instead of being evaluated again in double precision. Rounded
 // products keep the order of the exact ones, so an edge function never has the wrong sign, only sometimes none: a ray that
 // meets an edge hits at least one of its triangles, perhaps both, at the same distance.
+// A hit counts only where its distance exceeds what rounding can make of 0: Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th
+// edition, section 6.8.7. The error grows with the triangle's aspect ratio, which no offset of the ray's origin knows of its neighbours.
 #ifndef LIB_INTERSECT_GLSL
 #define LIB_INTERSECT_GLSL
+
+#include "lib/colour.glsl"
 
 /// 1 / direction, finite: components nearer to zero than 1e-30 count as that, so that a box's side that the origin lies on is never
 /// zero times infinity.
@@ -51,6 +55,20 @@ TriangleRay triangle_ray(vec3 origin, vec3 direction) {
     return TriangleRay(origin, vec3(d.xy / d.z, 1.0 / d.z), axis);
 }
 
+/// Largest error of the sum of `edges` times `z` over the sum of `edges`, whose reciprocal is `inverse`; x, y, z hold all three corners' components
+/// after the shear.
+///
+/// A sheared x or y has 5 roundings of itself and z, and an edge function 2 of its products besides what x and y bring in; the weighted sum
+/// of z adds 3 and the 3 of z itself.
+float depth_error(vec3 x, vec3 y, vec3 z, vec3 edges, float inverse) {
+    const float rounding = 5.9604645e-8;
+    float most_x = max_component(abs(x));
+    float most_y = max_component(abs(y));
+    float most_z = max_component(abs(z));
+    float edge_error = 2.0 * rounding * (12.0 * most_x * most_y + 5.0 * most_z * (most_x + most_y));
+    return 3.0 * most_z * (6.0 * rounding * max_component(abs(edges)) + edge_error) * abs(inverse);
+}
+
 /// Distance, and barycentrics of p1 and p2, of a hit in (t_min, t_max).
 bool intersect_watertight(TriangleRay ray, vec3 p0, vec3 p1, vec3 p2, float t_min, float t_max, out float t, out vec2 barycentrics) {
     vec3 a = axis_last(p0 - ray.origin, ray.axis);
@@ -64,10 +82,15 @@ bool intersect_watertight(TriangleRay ray, vec3 p0, vec3 p1, vec3 p2, float t_mi
     float least = min(edges.x, min(edges.y, edges.z));
     float most = max(edges.x, max(edges.y, edges.z));
     float inverse = 1.0 / (edges.x + edges.y + edges.z);
-    t = dot(edges, vec3(a.z, b.z, c.z)) * ray.shear.z * inverse;
+    vec3 depths = vec3(a.z, b.z, c.z);
+    t = dot(edges, depths) * ray.shear.z * inverse;
     barycentrics = edges.yz * inverse;
     // Edge-on, all edges are zero and t is no number: the comparisons fail.
-    return (least >= 0.0 || most <= 0.0) && t > t_min && t < t_max;
+    if (!((least >= 0.0 || most <= 0.0) && t > t_min && t < t_max)) {
+        return false;
+    }
+    float error = depth_error(vec3(a2.x, b2.x, c2.x), vec3(a2.y, b2.y, c2.y), depths, edges, inverse);
+    return t > t_min + error * abs(ray.shear.z);
 }
 
 /// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. Same contract; rays may pass between triangles.

@@ -4,7 +4,8 @@
 // the distance, with a bound on its rounding error (6.8.5) carried through the instance's transform; the origin moves along the
 // geometric normal just out of that box. The bound follows the coordinates, so scenes of 10^-3 m and of 10^6 m behave alike.
 // Deviations and why: pbrt gives what the next ray loses on its way back into mesh space, and in the triangle test, to that ray's t_min;
-// traversals here start at t_min = 0, so it is part of this bound.
+// traversals here start at t_min = 0 and may be a device's own, so it is part of this bound. What slivers add to it depends on the triangle
+// that is tested, not on the one that the ray leaves: the watertight test sees to it (lib/intersect.glsl).
 #ifndef LIB_RAY_OFFSET_GLSL
 #define LIB_RAY_OFFSET_GLSL
 

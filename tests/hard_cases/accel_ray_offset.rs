@@ -1,5 +1,5 @@
 //! Rays that leave a surface do not meet it again, and do not skip a plate close behind it: from 10^-3 m to 10^6 m, far from the mesh's
-//! own origin, far from the world's, and through turned, mirrored and squashed instances.
+//! own origin, far from the world's, through turned, mirrored and squashed instances, and from slivers.
 
 use crate::common::rays::{Traced, mesh_of, scene_of};
 use crate::common::{self, TestGpu};
@@ -7,6 +7,7 @@ use glam::{DMat4, DQuat, DVec3, EulerRot};
 use pathspace::scene::Mesh;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
+use std::f64::consts::TAU;
 
 /// Specialization constant `rays.offset`.
 const RAY_OFFSET: u32 = 101;
@@ -115,6 +116,37 @@ fn partners(mesh: &Mesh) -> Vec<(u32, f32)> {
     let partner =
         |triangle: &[u32; 3]| if triangle[0].is_multiple_of(6) { (of(triangle[0] + 3), 1.0) } else { (of(triangle[0] - 3), -1.0) };
     mesh.triangles.iter().map(partner).collect()
+}
+
+/// A bar of `sides` slivers around, each 9 m long and some 5 cm wide, its caps left open: convex, so that nothing that leaves it outwards meets it.
+fn bar(sides: u32) -> Mesh {
+    let corner = |side: u32, end: f64| {
+        let angle = f64::from(side) / f64::from(sides) * TAU;
+        DVec3::new(end, 0.8 * angle.cos(), 0.8 * angle.sin()).as_vec3().to_array()
+    };
+    let positions = (0..sides).flat_map(|side| [corner(side, -4.5), corner(side, 4.5)]).collect();
+    let quad = |side: u32| {
+        let (a, b) = (2 * side, 2 * ((side + 1) % sides));
+        [[a, b, b + 1], [a, b + 1, a + 1]]
+    };
+    mesh_of(positions, (0..sides).flat_map(quad).collect())
+}
+
+/// The watertight test's rounding grows with a triangle's aspect ratio, beyond what the origin's offset allows for.
+#[test]
+fn rays_that_leave_a_convex_bar_of_slivers_do_not_meet_it() {
+    let gpu = common::gpu();
+    let mut rng = Pcg32::seed_from_u64(32);
+    for transform in [DMat4::IDENTITY, squashed(1.0), DMat4::from_scale(DVec3::splat(1e-3))] {
+        let traced = Traced::new(&gpu, scene_of(vec![(bar(100), vec![transform])]));
+        let departures = departures(&mut rng, &traced, 1 << 16);
+        let outwards = if transform.determinant() < 0.0 { -1.0 } else { 1.0 };
+        for (stem, _) in &traced.structures {
+            let arrivals: Vec<Arrival> = traced.run(stem, KERNEL, &departures, &traced.alpha_constants());
+            let met = arrivals.iter().filter(|arrival| outwards * arrival.cosine > 0.0 && arrival.found == 1).count();
+            assert_eq!(met, 0, "{stem}: {transform}");
+        }
+    }
 }
 
 fn squashed(scale: f64) -> DMat4 {
