@@ -24,7 +24,7 @@ MASK_UPSAMPLING = 8
 def load(path, size, bounces):
     """The scene, seen by the file's camera, for a picture of `size`; `bounces` scattering events after the primary hit.
 
-    Triangles, spheres and points are chosen by their power (`sampling_weight`), which changes the noise and not the mean."""
+    Triangles, spheres, points and spots are chosen by their power (`sampling_weight`), which changes the noise and not the mean."""
     glb = Glb(path)
     unknown = set(glb.json.get("extensionsUsed", [])) - KNOWN
     assert not unknown, f"{path}: {unknown} is not modelled here"
@@ -75,24 +75,28 @@ def shape(glb, primitive, world, materials):
     assert primitive.get("mode", 4) == 4 and "COLOR_0" not in primitive["attributes"]
     attribute = lambda name: glb.accessor(primitive["attributes"][name]).astype(np.float64)
     positions = attribute("POSITION") @ world[:3, :3].T + world[:3, 3]
-    normals = attribute("NORMAL") @ np.linalg.inv(world[:3, :3])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     triangles = glb.accessor(primitive["indices"]).reshape(-1, 3)
     if np.linalg.det(world[:3, :3]) < 0:
         triangles = triangles[:, [0, 2, 1]]
     properties = mi.Properties()
     properties["bsdf"] = materials.bsdf(primitive["material"])
     emission = materials.emission(primitive["material"])
-    if any(emission):
+    shines = any(emission)
+    if shines:
+        # Mitsuba's emitters would take side and foreshortening from interpolated normals, which loses light where those and the triangle disagree.
+        assert materials.is_black(primitive["material"]), "without its normals a shape cannot reflect as it should"
         corners = positions[triangles]
         area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
         emitter = {"type": "area", "radiance": rgb(emission), "sampling_weight": math.pi * area * emission.mean()}
         properties["emitter"] = mi.load_dict(emitter)
     has_uv = "TEXCOORD_0" in primitive["attributes"]
-    mesh = mi.Mesh("mesh", len(positions), len(triangles), properties, has_vertex_normals=True, has_vertex_texcoords=has_uv)
+    mesh = mi.Mesh("mesh", len(positions), len(triangles), properties, has_vertex_normals=not shines, has_vertex_texcoords=has_uv)
     parameters = mi.traverse(mesh)
     parameters["vertex_positions"] = positions.astype(np.float32).ravel()
-    parameters["vertex_normals"] = normals.astype(np.float32).ravel()
+    if not shines:
+        normals = attribute("NORMAL") @ np.linalg.inv(world[:3, :3])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        parameters["vertex_normals"] = normals.astype(np.float32).ravel()
     parameters["faces"] = triangles.astype(np.uint32).ravel()
     if has_uv:
         parameters["vertex_texcoords"] = attribute("TEXCOORD_0").astype(np.float32).ravel()
@@ -131,6 +135,8 @@ def spot_light(cone, color, position, direction):
         "type": "spot",
         "to_world": mi.ScalarTransform4f().look_at(origin=position.tolist(), target=(position + direction).tolist(), up=up),
         "intensity": rgb(color),
+        # Several times its power: what it is there to light may be glossy.
+        "sampling_weight": 8 * math.pi * (1 - outer) * color.mean(),
         "cutoff_angle": math.degrees(math.acos(outer)),
         "beam_width": math.degrees(math.acos(outer)),
         "texture": {"type": "bitmap", "bitmap": picture, "raw": True, "wrap_mode": "clamp"},
@@ -147,6 +153,11 @@ class Materials:
         assert "emissiveTexture" not in material
         strength = extension(material, "emissive_strength").get("emissiveStrength", 1)
         return np.array(material.get("emissiveFactor", [0, 0, 0])) * strength
+
+    def is_black(self, index):
+        material = self.glb.json["materials"][index]
+        color = material.get("pbrMetallicRoughness", {}).get("baseColorFactor", [1, 1, 1, 1])
+        return not any(color[:3]) and extension(material, "specular").get("specularFactor", 1) == 0
 
     def bsdf(self, index):
         if index not in self.made:
