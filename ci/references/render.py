@@ -8,17 +8,10 @@ its variance, from independent batches), and NAME.json beside it.
 """
 
 import argparse
-import glob
 import hashlib
 import json
-import os
 import pathlib
 import time
-
-# LLVM 14 and 15 lack an instruction that Dr.Jit needs.
-LLVM = [path for name in ("libLLVM.so.19*", "libLLVM-16.so*") for path in sorted(glob.glob(f"/usr/lib/*-linux-gnu/{name}"))]
-if LLVM:
-    os.environ.setdefault("DRJIT_LIBLLVM_PATH", LLVM[0])
 
 import mitsuba as mi
 import numpy as np
