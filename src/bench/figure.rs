@@ -86,7 +86,7 @@ pub static FIGURES: &[FigureKind] = &[
         "temporal error",
         "",
         Less,
-        "mean luminance difference of subsequent frames, beyond the reference's own (Voorhuis 2018, 7.1)",
+        "mean tonemapped luminance difference of subsequent frames, beyond the reference's own (Voorhuis 2018, 7.1)",
     ),
     kind(Fault, "nan", "NaN", "pixels", Less, "pixels that hold a NaN"),
     kind(Fault, "infinite", "infinite", "pixels", Less, "pixels that hold an infinity"),

@@ -5,17 +5,16 @@ use super::arguments;
 use super::output::{check_writable, print_result, write_atomically};
 use crate::display::image::write_png_bytes;
 use crate::display::{Image, ToneCurve, ToneMapping};
-use crate::metrics::flip::FlipErrors;
-use crate::metrics::{self, MetricError, Pair};
+use crate::metrics::{self, ErrorMap, MetricError, Pair};
 use serde_json::json;
 use std::cell::LazyCell;
 use std::path::{Path, PathBuf};
 
 /// Measure how far a picture is from a reference (EXR, HDR or PNG)
 ///
-/// mse, relmse and mean-ratio compare radiance. psnr, ssim and flip compare what a screen shows: EXR and HDR files are
-/// tonemapped, PNG files taken as they are. relmse_trimmed leaves out the worst 0.1 % of the pixels. Where a value is infinite
-/// (psnr of equal pictures), JSON has null.
+/// mse, relmse, hdr-flip and mean-ratio compare radiance, which of PNG files is what a screen emits. rmse-tonemapped, psnr, ssim and
+/// flip compare what a screen shows: EXR and HDR files are tonemapped, PNG files taken as they are. relmse_trimmed leaves out the
+/// worst 0.1 % of the pixels. Where a value is infinite (psnr of equal pictures), JSON has null.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The picture
@@ -38,7 +37,7 @@ pub struct Args {
     /// Exposure before tonemapping: radiance is multiplied by 2^EV
     #[arg(long, value_name = "EV", value_parser = arguments::finite, allow_hyphen_values = true, default_value = "0")]
     exposure: f32,
-    /// Tone curve for psnr, ssim and flip
+    /// Tone curve for rmse-tonemapped, psnr, ssim and flip
     #[arg(long, value_enum, default_value = "aces")]
     tonemap: ToneCurve,
 }
@@ -48,9 +47,11 @@ enum Metric {
     All,
     Mse,
     Relmse,
+    RmseTonemapped,
     Psnr,
     Ssim,
     Flip,
+    HdrFlip,
     MeanRatio,
 }
 
@@ -63,7 +64,7 @@ struct Limit {
 fn parse_limit(text: &str) -> Result<Limit, String> {
     let (name, bound) = arguments::assignment(text)?;
     let metric = <Metric as clap::ValueEnum>::from_str(&name, false).ok().filter(|metric| *metric != Metric::All);
-    let metric = metric.ok_or("expected one of mse, relmse, psnr, ssim, flip, mean-ratio before '='")?;
+    let metric = metric.ok_or("expected one of mse, relmse, rmse-tonemapped, psnr, ssim, flip, hdr-flip, mean-ratio before '='")?;
     let bound = bound.parse().ok().filter(|bound: &f64| bound.is_finite()).ok_or("expected a finite number after '='")?;
     Ok(Limit { metric, bound })
 }
@@ -86,23 +87,29 @@ struct Row {
     value: f64,
 }
 
-/// Both pictures, as radiance and as a screen shows them.
+/// Both pictures, as radiance, as a screen emits them, and as it takes them.
 struct Comparison<'a> {
     radiance: Pair<'a>,
+    displayed: Pair<'a>,
     encoded: Pair<'a>,
-    flip: LazyCell<FlipErrors, Box<dyn FnOnce() -> FlipErrors + 'a>>,
+    flip: LazyCell<ErrorMap, Box<dyn FnOnce() -> ErrorMap + 'a>>,
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     check_writable(args.heatmap.as_deref())?;
     let pictures = [Image::read(&args.image)?, Image::read(&args.reference)?];
     let radiance = Pair::new(&pictures[0], &pictures[1])?;
-    let encoded = [(&args.image, &pictures[0]), (&args.reference, &pictures[1])].map(|(path, image)| args.mapping(path).encoded(image));
-    let encoded = Pair::new(&encoded[0], &encoded[1])?;
-    let comparison = Comparison { radiance, encoded, flip: LazyCell::new(Box::new(|| metrics::flip(&encoded))) };
+    let mapped = |map: fn(&ToneMapping, &Image) -> Image| {
+        [(&args.image, &pictures[0]), (&args.reference, &pictures[1])].map(|(path, image)| map(&args.mapping(path), image))
+    };
+    let [displayed, encoded] = [mapped(ToneMapping::displayed), mapped(ToneMapping::encoded)];
+    let [displayed, encoded] = [Pair::new(&displayed[0], &displayed[1])?, Pair::new(&encoded[0], &encoded[1])?];
+    let comparison = Comparison { radiance, displayed, encoded, flip: LazyCell::new(Box::new(|| metrics::flip(&encoded))) };
     let rows = comparison.rows(args)?;
     if let Some(path) = &args.heatmap {
-        write_atomically(path, |file| write_png_bytes(pictures[0].width, pictures[0].height, &comparison.flip.heatmap(), file))?;
+        write_atomically(path, |file| {
+            write_png_bytes(pictures[0].width, pictures[0].height, &metrics::flip::heatmap(&comparison.flip), file)
+        })?;
     }
     print_result(&if args.json { args.json_text(&pictures[0], &rows) } else { args.table(&rows) })?;
     let all_hold = args.checks(&rows).all(|(_, _, holds)| holds);
@@ -115,7 +122,7 @@ impl Comparison<'_> {
         use Metric::*;
         let limited = |metric| args.fail_above.iter().any(|limit| limit.metric == metric);
         let mut rows = Vec::new();
-        for metric in [Mse, Relmse, Psnr, Ssim, Flip, MeanRatio] {
+        for metric in [Mse, Relmse, RmseTonemapped, Psnr, Ssim, Flip, HdrFlip, MeanRatio] {
             let named = args.metric == metric || limited(metric);
             if !named && args.metric != All {
                 continue;
@@ -137,13 +144,19 @@ impl Comparison<'_> {
                 let trimmed = |fraction| metrics::relmse(&self.radiance, fraction);
                 vec![("relmse", trimmed(0.0)), ("relmse_trimmed", trimmed(metrics::relmse::WORST_TRIMMED))]
             }
+            Metric::RmseTonemapped => vec![("rmse_tonemapped", metrics::rmse_tonemapped(&self.displayed))],
             Metric::Psnr => vec![("psnr", metrics::psnr(&self.encoded))],
             Metric::Ssim => vec![("ssim", metrics::ssim(&self.encoded)?)],
-            Metric::Flip => vec![("flip", self.flip.mean), ("flip_p99", self.flip.percentile_99)],
+            Metric::Flip => summary(["flip", "flip_p99", "flip_worst_tile"], &self.flip),
+            Metric::HdrFlip => summary(["hdr_flip", "hdr_flip_p99", "hdr_flip_worst_tile"], &metrics::hdr_flip(&self.radiance)),
             Metric::MeanRatio => vec![("mean_ratio", metrics::mean_ratio(&self.radiance))],
             Metric::All => vec![],
         })
     }
+}
+
+fn summary([mean, percentile_99, worst_tile]: [&'static str; 3], map: &ErrorMap) -> Vec<(&'static str, f64)> {
+    vec![(mean, map.mean()), (percentile_99, map.percentile_99()), (worst_tile, map.worst_tile())]
 }
 
 impl Args {
@@ -164,7 +177,7 @@ impl Args {
     }
 
     fn table(&self, rows: &[Row]) -> String {
-        let mut lines: Vec<String> = rows.iter().map(|row| format!("{:<16}{}", row.name, number(row.value))).collect();
+        let mut lines: Vec<String> = rows.iter().map(|row| format!("{:<21}{}", row.name, number(row.value))).collect();
         lines.extend(self.checks(rows).map(|(limit, value, holds)| {
             let verdict = if holds { "holds" } else { "FAILED" };
             format!("{verdict}: --fail-above {}={} at {}", name(limit.metric), limit.bound, number(value))

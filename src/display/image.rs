@@ -79,8 +79,13 @@ impl Image {
     pub fn made_finite(&self, what: &str) -> Cow<'_, Image> {
         let Some((count, (x, y))) = self.non_finite() else { return Cow::Borrowed(self) };
         tracing::warn!("{what}: {count} pixels were not finite and became 0; the first is ({x}, {y})");
+        Cow::Owned(self.with_zeros())
+    }
+
+    /// The same picture with non-finite channels set to 0, silently.
+    pub fn with_zeros(&self) -> Image {
         let finite = |channel: f32| if channel.is_finite() { channel } else { 0.0 };
-        Cow::Owned(Image::new(self.width, self.height, self.pixels.par_iter().map(|pixel| pixel.map(finite)).collect()))
+        Image::new(self.width, self.height, self.pixels.par_iter().map(|pixel| pixel.map(finite)).collect())
     }
 }
 

@@ -35,6 +35,12 @@ impl ToneMapping {
         })
     }
 
+    /// The same size, its values linear in [0, 1]: tonemapped without gamma.
+    pub fn displayed(&self, image: &Image) -> Image {
+        let pixels = image.pixels.par_iter().map(|&pixel| self.display_values(pixel)).collect();
+        Image::new(image.width, image.height, pixels)
+    }
+
     /// The same size, its values sRGB-encoded in [0, 1] as a screen takes them; not quantised.
     pub fn encoded(&self, image: &Image) -> Image {
         let pixels = image.pixels.par_iter().map(|&pixel| self.display_values(pixel).map(srgb_encode)).collect();

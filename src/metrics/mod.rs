@@ -1,23 +1,40 @@
 //! How far a picture is from a reference, and whether the distance is chance. On the CPU, in double precision.
 //!
-//! `mse`, `relmse` and `mean_ratio` take radiance; `psnr`, `ssim` and `flip` take sRGB-encoded values in [0, 1], which
-//! [`ToneMapping::encoded`](crate::display::ToneMapping::encoded) makes.
+//! `mse`, `relmse`, `hdr_flip`, `mean_ratio` and `split` take radiance; `rmse_tonemapped` and `temporal` take linear display values
+//! in [0, 1], which [`ToneMapping::displayed`](crate::display::ToneMapping::displayed) makes; `psnr`, `ssim` and `flip` take
+//! sRGB-encoded ones of [`ToneMapping::encoded`](crate::display::ToneMapping::encoded). [`accuracy`] does it all at once.
 
+pub mod accuracy;
+pub mod error_map;
+pub mod estimate;
+pub mod faults;
 pub mod flip;
 pub mod mean_ratio;
 pub mod mse;
 pub mod psnr;
 pub mod relmse;
+pub mod rmse_tonemapped;
+pub mod series;
+pub mod split;
 pub mod ssim;
 pub mod statistics;
+pub mod temporal;
 pub mod z_test;
 
+pub use accuracy::accuracy;
+pub use error_map::ErrorMap;
+pub use estimate::Estimate;
+pub use faults::Faults;
 pub use flip::flip;
+pub use flip::hdr::hdr_flip;
 pub use mean_ratio::mean_ratio;
 pub use mse::mse;
 pub use psnr::psnr;
 pub use relmse::relmse;
+pub use rmse_tonemapped::rmse_tonemapped;
+pub use split::split;
 pub use ssim::ssim;
+pub use temporal::temporal;
 pub use z_test::z_test;
 
 use crate::display::Image;
@@ -31,6 +48,8 @@ pub enum MetricError {
     NotFinite { which: &'static str, count: usize, first: (u32, u32) },
     #[error("SSIM needs at least 11x11 pixels; these pictures are {}x{}", size.0, size.1)]
     TooSmallForSsim { size: (u32, u32) },
+    #[error("{given} pictures are too few: at least {needed} of independent seeds are needed")]
+    TooFewPictures { given: usize, needed: usize },
 }
 
 /// A picture and what it should be: one size, all finite.
@@ -67,6 +86,11 @@ impl<'a> Pair<'a> {
     fn pixel_errors(&self, error: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         self.pixels().map(|(a, b)| (error(a[0], b[0]) + error(a[1], b[1]) + error(a[2], b[2])) / 3.0).collect()
     }
+}
+
+/// Luminance of linear Rec. 709 values, luma of encoded ones.
+fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 /// What the judges of other hands saw: 48x32 pictures of whole bytes, for which flip-evaluator 1.7, scikit-image 0.26.0

@@ -6,9 +6,14 @@ use super::Pair;
 /// The fraction of pixels that published figures usually leave out, so that fireflies of one method do not decide.
 pub const WORST_TRIMMED: f64 = 0.001;
 
+/// What a squared error is multiplied by where the reference is `reference`.
+pub fn weight(reference: f64) -> f64 {
+    1.0 / (reference * reference + 0.01)
+}
+
 /// Mean over pixels and channels of (a - b)^2 / (b^2 + 0.01), without the `trimmed` fraction (0 to 1) of the worst pixels.
 pub fn relmse(pair: &Pair, trimmed: f64) -> f64 {
-    let mut errors = pair.pixel_errors(|a, b| (a - b).powi(2) / (b * b + 0.01));
+    let mut errors = pair.pixel_errors(|a, b| (a - b).powi(2) * weight(b));
     let kept = errors.len() - (errors.len() as f64 * trimmed) as usize;
     if kept < errors.len() {
         errors.select_nth_unstable_by(kept, f64::total_cmp);

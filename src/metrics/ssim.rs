@@ -1,7 +1,7 @@
 //! Structural similarity: Wang, Bovik, Sheikh and Simoncelli 2004, "Image Quality Assessment: From Error Visibility to
 //! Structural Similarity", equation 13 under an 11x11 Gaussian window of sigma 1.5.
 
-use super::{MetricError, Pair};
+use super::{MetricError, Pair, luminance};
 use rayon::prelude::*;
 
 const WINDOW: usize = 11;
@@ -17,7 +17,7 @@ pub fn ssim(encoded: &Pair) -> Result<f64, MetricError> {
     if width.min(height) < WINDOW as u32 {
         return Err(MetricError::TooSmallForSsim { size: (width, height) });
     }
-    let pixels: Vec<[f64; 2]> = encoded.pixels().map(|(a, b)| [luma(a), luma(b)]).collect();
+    let pixels: Vec<[f64; 2]> = encoded.pixels().map(|(a, b)| [luminance(a), luminance(b)]).collect();
     let moments: [fn(&[f64; 2]) -> f64; 5] = [|p| p[0], |p| p[1], |p| p[0] * p[0], |p| p[1] * p[1], |p| p[0] * p[1]];
     let blurred: Vec<Vec<f64>> =
         moments.par_iter().map(|moment| window_means(width as usize, &pixels.iter().map(moment).collect::<Vec<_>>())).collect();
@@ -28,10 +28,6 @@ pub fn ssim(encoded: &Pair) -> Result<f64, MetricError> {
         (2.0 * mean_a * mean_b + C1) * (2.0 * covariance + C2) / ((mean_a * mean_a + mean_b * mean_b + C1) * (variance_a + variance_b + C2))
     };
     Ok((0..count).map(similarity).sum::<f64>() / count as f64)
-}
-
-fn luma([r, g, b]: [f64; 3]) -> f64 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 /// Gaussian-weighted means of all windows within a picture that is `width` wide: 10 columns and 10 rows fewer.

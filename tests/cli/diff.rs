@@ -32,7 +32,10 @@ fn json_has_a_version_and_every_metric() {
     let directory = pictures();
     let result = json(directory.path(), &["diff", "a.exr", "b.exr", "--json"]);
     assert_eq!(result["version"], 1);
-    for name in ["mse", "relmse", "relmse_trimmed", "psnr", "ssim", "flip", "flip_p99", "mean_ratio"] {
+    for name in ["mse", "relmse", "relmse_trimmed", "rmse_tonemapped", "psnr", "ssim", "mean_ratio"] {
+        assert!(result["metrics"][name].is_f64(), "{name}: {result}");
+    }
+    for name in ["flip", "flip_p99", "flip_worst_tile", "hdr_flip", "hdr_flip_p99", "hdr_flip_worst_tile"] {
         assert!(result["metrics"][name].is_f64(), "{name}: {result}");
     }
     assert!((result["metrics"]["mean_ratio"].as_f64().unwrap() - 1.1).abs() < 1e-6);
@@ -56,6 +59,8 @@ fn limits_decide_the_exit_code() {
         ("mse=1", "mse=1e-9"),
         ("relmse=1", "relmse=1e-9"),
         ("flip=1", "flip=0"),
+        ("hdr-flip=1", "hdr-flip=0"),
+        ("rmse-tonemapped=1", "rmse-tonemapped=1e-9"),
         ("psnr=5", "psnr=99"),
         ("ssim=0.1", "ssim=1"),
         ("mean-ratio=0.11", "mean-ratio=0.09"),

@@ -1,18 +1,16 @@
 //! Error measures rank pictures as a person would, and the tests of statistics/ keep the false-alarm rate that they state.
 
+use super::common::normal;
+use pathspace::bench::figure::{FIGURES, Group};
 use pathspace::display::{Image, ToneMapping};
+use pathspace::metrics::accuracy::{Reference, Shot};
 use pathspace::metrics::statistics::{BatchMeans, chi_square_test};
 use pathspace::metrics::z_test::{Estimate, z_test};
-use pathspace::metrics::{Pair, flip, mean_ratio, mse, psnr, relmse, ssim};
+use pathspace::metrics::{Pair, accuracy, flip, hdr_flip, mean_ratio, mse, psnr, relmse, ssim};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
-use statrs::distribution::{ContinuousCDF, Normal};
 
 const SIZE: u32 = 24;
-
-fn normal(rng: &mut Pcg32) -> f64 {
-    Normal::standard().inverse_cdf(rng.random_range(f64::EPSILON..1.0))
-}
 
 fn smooth_picture() -> Image {
     let pixel = |i: u32| [0.1 + (i % SIZE) as f32 / 32.0, 0.2 + (i / SIZE) as f32 / 64.0, 0.5];
@@ -31,7 +29,7 @@ fn errors(image: &Image, reference: &Image) -> [f64; 5] {
     let encoded = [mapping.encoded(image), mapping.encoded(reference)];
     let (radiance, encoded) = (Pair::new(image, reference).unwrap(), Pair::new(&encoded[0], &encoded[1]).unwrap());
     let psnr_as_error = (-psnr(&encoded) / 10.0).exp2();
-    [mse(&radiance), relmse(&radiance, 0.0), psnr_as_error, 1.0 - ssim(&encoded).unwrap(), flip(&encoded).mean]
+    [mse(&radiance), relmse(&radiance, 0.0), psnr_as_error, 1.0 - ssim(&encoded).unwrap(), flip(&encoded).mean()]
 }
 
 #[test]
@@ -41,6 +39,90 @@ fn equal_pictures_have_no_error() {
         assert!(error.abs() < 1e-12, "{error}");
     }
     assert_eq!(mean_ratio(&Pair::new(&image, &image).unwrap()), 1.0);
+}
+
+/// NVIDIA's own code takes bytes alone: 6 random pictures of them, each pixel's error within 1e-4.
+#[test]
+fn flip_agrees_with_its_authors_code_at_every_pixel() {
+    let mut rng = Pcg32::seed_from_u64(7);
+    for (width, height) in [(1, 1), (5, 40), (16, 16), (37, 23), (64, 3), (50, 50)] {
+        let mut bytes = || (0..width * height * 3).map(|_| rng.random::<u8>()).collect::<Vec<u8>>();
+        let [reference, test] = [bytes(), bytes()];
+        let theirs = [&reference, &test].map(|bytes| nv_flip::FlipImageRgb8::with_data(width, height, bytes));
+        let [theirs_reference, theirs_test] = theirs;
+        let theirs = nv_flip::flip(theirs_reference, theirs_test, nv_flip::pixels_per_degree(0.7, 3840.0, 0.7)).to_vec();
+        let image = |bytes: &[u8]| {
+            let pixels = bytes.chunks(3).map(|pixel| [0, 1, 2].map(|channel: usize| f32::from(pixel[channel]) / 255.0));
+            Image::new(width, height, pixels.collect())
+        };
+        let ours = flip(&Pair::new(&image(&test), &image(&reference)).unwrap());
+        let worst = ours.errors.iter().zip(&theirs).map(|(ours, theirs)| (ours - f64::from(*theirs)).abs()).fold(0.0, f64::max);
+        assert!(worst < 1e-4, "{width}x{height}: {worst}");
+    }
+}
+
+/// An error in the dark that ACES' own exposure hides shows at a longer one, and not the other way round.
+#[test]
+fn hdr_flip_sees_in_the_dark() {
+    let mut reference = smooth_picture();
+    reference.pixels.iter_mut().enumerate().for_each(|(i, pixel)| *pixel = if i < 100 { [1e3; 3] } else { [1e-3; 3] });
+    let mut image = reference.clone();
+    image.pixels[300..400].iter_mut().for_each(|pixel| *pixel = [2e-3; 3]);
+    let mapping = ToneMapping::default();
+    let encoded = [mapping.encoded(&image), mapping.encoded(&reference)];
+    let ldr = flip(&Pair::new(&encoded[0], &encoded[1]).unwrap());
+    let hdr = hdr_flip(&Pair::new(&image, &reference).unwrap());
+    assert!(hdr.mean() > 5.0 * ldr.mean(), "{} {}", hdr.mean(), ldr.mean());
+}
+
+fn shots(images: &[Image]) -> Vec<Shot<'_>> {
+    images.iter().map(|last| Shot { last, before: Some(&images[0]) }).collect()
+}
+
+#[test]
+fn accuracy_has_every_figure_of_its_groups_and_no_other() {
+    let truth = smooth_picture();
+    let images: Vec<Image> = (0..3).map(|seed| noisy(&truth, 0.2, 10 + seed)).collect();
+    let variance = Image::new(SIZE, SIZE, vec![[1e-6; 3]; truth.pixels.len()]);
+    let reference = Reference { mean: &truth, variance: Some(&variance), before: Some(&truth) };
+    let figures = accuracy(&shots(&images), &reference, &ToneMapping::default()).unwrap();
+    let groups = [Group::Error, Group::Split, Group::Temporal, Group::Fault];
+    let mut expected: Vec<&str> = FIGURES.iter().filter(|figure| groups.contains(&figure.group)).map(|figure| figure.key).collect();
+    expected.sort_unstable();
+    assert_eq!(figures.keys().copied().collect::<Vec<_>>(), expected);
+    for (key, estimate) in &figures {
+        assert!(estimate.low <= estimate.value && estimate.value <= estimate.high, "{key}: {estimate:?}");
+        assert_eq!(estimate.samples.len(), 3, "{key}");
+    }
+    let ratio = (figures["relmse"].value / relmse(&Pair::new(&images[0], &truth).unwrap(), 0.0) - 1.0).abs();
+    assert!(ratio < 0.2, "the mean of three like seeds is near one's: {ratio}");
+}
+
+#[test]
+fn accuracy_counts_what_is_not_finite_and_goes_on_without_it() {
+    let truth = smooth_picture();
+    let mut images: Vec<Image> = (0..2).map(|seed| noisy(&truth, 0.1, 20 + seed)).collect();
+    images[0].pixels[3] = [f32::NAN, 0.1, 0.1];
+    images[1].pixels[4] = [f32::INFINITY, -1.0, 0.1];
+    images[1].pixels[5] = [0.1, -1.0, 0.1];
+    let reference = Reference { mean: &truth, variance: None, before: None };
+    let figures = accuracy(&shots(&images), &reference, &ToneMapping::default()).unwrap();
+    assert_eq!(["nan", "infinite", "negative"].map(|key| figures[key].value), [1.0, 1.0, 2.0]);
+    assert!(figures.values().all(|estimate| estimate.value.is_finite()));
+    assert!(!figures.contains_key("reference_ratio"), "an exact reference has no noise to compare with");
+}
+
+#[test]
+fn accuracy_of_one_perfect_seed_leaves_out_what_has_no_value() {
+    let truth = smooth_picture();
+    let reference = Reference { mean: &truth, variance: None, before: None };
+    let shot = Shot { last: &truth, before: None };
+    let figures = accuracy(&[shot], &reference, &ToneMapping::default()).unwrap();
+    for key in ["psnr", "bias2", "variance", "temporal"] {
+        assert!(!figures.contains_key(key), "{key}");
+    }
+    assert_eq!((figures["energy"].low, figures["energy"].high, figures["hdr_flip"].value), (1.0, 1.0, 0.0));
+    assert!(accuracy(&[], &reference, &ToneMapping::default()).is_err());
 }
 
 #[test]

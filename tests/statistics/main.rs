@@ -8,4 +8,6 @@ mod surface;
 
 mod bsdf_chi_square;
 mod furnace;
+mod intervals;
 mod lights;
+mod split;
