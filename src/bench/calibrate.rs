@@ -73,7 +73,7 @@ impl Calibration<'_> {
                 spp,
                 most_spp: technique.max_spp,
                 ns_per_pixel: shots.timings.frame_ms_median * 1e6 / f64::from(size[0] * size[1]),
-                flip: accuracy::mean_flip(&shots.last, &reference),
+                flip: accuracy::mean_flip(&shots.last, &reference)?,
             });
         }
         candidates.retain(|candidate| candidate.ns_per_pixel.is_finite() && candidate.flip.is_finite());

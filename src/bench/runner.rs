@@ -1,6 +1,5 @@
 //! Measures one point after the other: renders every seed, times the frames, holds the pictures against the reference, and writes a record.
 
-use super::figure;
 use super::log::{Log, LogError};
 use super::plan::Planned;
 use super::record::{Figure, Moves, PassFigure, Pictures, Provenance, Record, ReferenceQuality, VERSION};
@@ -9,13 +8,17 @@ use super::shots::Shots;
 use super::stage::Stage;
 use super::suite::{Suite, SuiteError};
 use super::{accuracy, roofline};
+use crate::display::image::write_png_bytes;
 use crate::display::{Image, ImageError, ToneMapping};
 use crate::gpu::{Gpu, GpuError};
+use crate::metrics::series::quantile_of_series;
 use crate::metrics::statistics::quantile;
+use crate::metrics::{self, Estimate, MetricError};
 use crate::scene::LoadError;
 use crate::scene::source::SourceError;
 use crate::technique::{PassTime, RenderError, Timings};
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// Why a point could not be measured.
@@ -33,6 +36,8 @@ pub enum BenchError {
     Gpu(#[from] GpuError),
     #[error(transparent)]
     Log(#[from] LogError),
+    #[error(transparent)]
+    Metric(#[from] MetricError),
     #[error("cannot write '{}': {source}", path.display())]
     Picture { path: PathBuf, source: ImageError },
 }
@@ -113,7 +118,7 @@ impl<'a> Runner<'a> {
         let mut samples = (4 * u64::from(planned.point.spp)).clamp(64, most);
         for turn in 0.. {
             let reference = self.references.reference(&subject(frame), samples)?;
-            let error = accuracy::relative_error(&shots.last, &reference);
+            let error = accuracy::relative_error(&shots.last, &reference)?;
             let (standard_error, wanted) = (reference.standard_error(), self.suite.reference.ratio);
             let ratio = error / standard_error.max(f64::MIN_POSITIVE);
             if ratio >= wanted || reference.samples >= most || turn == IMPROVEMENTS {
@@ -121,7 +126,7 @@ impl<'a> Runner<'a> {
                     Moves::Nothing => None,
                     _ => Some(self.references.reference(&subject(frame.saturating_sub(1)), reference.samples)?),
                 };
-                let figures = accuracy::figures(shots, &reference, before.as_ref(), ratio);
+                let figures = accuracy::figures(shots, &reference, before.as_ref())?;
                 let quality = ReferenceQuality { key: subject(frame).key()?, samples_per_pixel: reference.samples, standard_error, ratio };
                 return Ok(Truth { reference, quality, figures });
             }
@@ -133,27 +138,31 @@ impl<'a> Runner<'a> {
     }
 
     fn write_pictures(&self, planned: &Planned, picture: &Image, reference: &Image) -> Result<Pictures, BenchError> {
-        let folder = self.folder.join("pictures");
         let mapping = ToneMapping::default();
-        let write = |name: String, bytes: Vec<u8>| -> Result<String, BenchError> {
-            let path = folder.join(&name);
-            let failed = |error: std::io::Error| BenchError::Picture { path: path.clone(), source: error.into() };
-            std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(&path, bytes)).map_err(failed)?;
-            Ok(format!("pictures/{name}"))
-        };
-        let png = |image: &Image| {
-            let mut bytes = Vec::new();
-            image.write_png(&mapping, &mut bytes).map(|()| bytes)
-        };
-        let encode = |image: &Image| png(image).map_err(|source| BenchError::Picture { path: folder.clone(), source });
-        let picture = picture.made_finite("a picture");
+        let errors = metrics::flip::heatmap(&accuracy::flip_map(picture, reference)?);
+        let heatmap = |file: &mut File| write_png_bytes(picture.width, picture.height, &errors, file);
+        let key = &planned.key;
         Ok(Pictures {
-            picture: write(format!("{}.png", planned.key), encode(&picture)?)?,
-            reference: write(format!("{}-reference.png", planned.key), encode(reference)?)?,
-            heatmap: write(format!("{}-error.png", planned.key), accuracy::heatmap(&picture, reference, &mapping))?,
+            picture: self.write_picture(format!("{key}.png"), |file| picture.with_zeros().write_png(&mapping, file))?,
+            reference: self.write_picture(format!("{key}-reference.png"), |file| reference.write_png(&mapping, file))?,
+            heatmap: self.write_picture(format!("{key}-error.png"), heatmap)?,
         })
     }
+
+    /// Its path as records hold it.
+    fn write_picture(&self, name: String, write: impl FnOnce(&mut File) -> Result<(), ImageError>) -> Result<String, BenchError> {
+        let path = self.folder.join(PICTURES).join(&name);
+        let create = || write(&mut File::create(&path)?);
+        std::fs::create_dir_all(self.folder.join(PICTURES))
+            .map_err(ImageError::from)
+            .and_then(|()| create())
+            .map_err(|source| BenchError::Picture { path: path.clone(), source })?;
+        Ok(format!("{PICTURES}/{name}"))
+    }
 }
+
+/// Folder of the pictures, beside results.jsonl.
+const PICTURES: &str = "pictures";
 
 struct Truth {
     reference: Reference,
@@ -177,19 +186,12 @@ fn time_figures(timings: &Timings, load_ms: f64) -> BTreeMap<String, Figure> {
         ("bytes_written", written as f64),
         ("bandwidth", (read + written) as f64 / frame * 1e-6),
     ];
-    let kept: Vec<f64> = timings.frame_ms.iter().copied().take(KEPT_SAMPLES).collect();
-    let sampled = [("frame_ms", accuracy::median_figure(kept)), ("frame_ms_p95", exactly(quantile(timings.frame_ms.clone(), 0.95)))];
-    let figures = single.into_iter().map(|(key, value)| (key, exactly(value))).chain(sampled);
-    figures.filter(|(_, figure)| figure.value.is_finite()).map(|(key, figure)| (key.to_owned(), with_unit(key, figure))).collect()
-}
-
-/// A figure that was measured once.
-fn exactly(value: f64) -> Figure {
-    Figure { value, low: value, high: value, unit: String::new(), samples: Vec::new() }
-}
-
-fn with_unit(key: &str, figure: Figure) -> Figure {
-    Figure { unit: figure::find(key).map_or("", |kind| kind.unit).to_owned(), ..figure }
+    let kept = &timings.frame_ms[..timings.frame_ms.len().min(KEPT_SAMPLES)];
+    let series = [("frame_ms", 0.5), ("frame_ms_p95", 0.95)].map(|(key, at)| (key, quantile_of_series(kept, at).ok()));
+    let mut figures: Vec<(&str, Estimate)> = single.map(|(key, value)| (key, Estimate::exact(value))).into();
+    figures.extend(series.into_iter().filter_map(|(key, estimate)| Some((key, estimate?))));
+    let finite = |estimate: &Estimate| [estimate.value, estimate.low, estimate.high].iter().all(|value| value.is_finite());
+    figures.into_iter().filter(|(_, estimate)| finite(estimate)).map(|(key, estimate)| accuracy::named(key, estimate)).collect()
 }
 
 fn pass_figure(pass: &PassTime) -> PassFigure {

@@ -58,6 +58,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
     points.retain(|planned| !runner.has(planned));
     let failed = measure(&mut runner, &points, suite.seeds)?;
     drop(runner);
+    super::report::write(std::slice::from_ref(&args.output), &args.output.join("report"))?;
     super::output::print_result(&format!("{}", args.output.join("report/index.html").display()))?;
     Ok(if failed == 0 { Outcome::Done } else { Outcome::CheckFailed })
 }

@@ -21,15 +21,20 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> anyhow::Result<Outcome> {
+    let out = args.output.clone().unwrap_or_else(|| args.results[0].join("report"));
+    write(&args.results, &out)?;
+    output::print_result(&out.join("index.html").display().to_string())?;
+    Ok(Outcome::Done)
+}
+
+/// One report of the results in these folders.
+pub fn write(results: &[PathBuf], out: &Path) -> anyhow::Result<()> {
     let mut measured = Vec::new();
-    for folder in &args.results {
+    for folder in results {
         let records = read_log(&folder.join(LOG))?;
         measured.extend(records.into_iter().map(|record| Measured { record, folder: folder.clone() }));
     }
-    let out = args.output.clone().unwrap_or_else(|| args.results[0].join("report"));
-    report::write(&measured, &out)?;
-    output::print_result(&out.join("index.html").display().to_string())?;
-    Ok(Outcome::Done)
+    Ok(report::write(&measured, out)?)
 }
 
 fn read_log(path: &Path) -> anyhow::Result<Vec<Record>> {
