@@ -89,6 +89,7 @@ fn host_type(ty: &str, sizes: &HashMap<String, u32>) -> Result<(String, u32), St
         "uvec3" => vector("u32", 3),
         "uvec4" => vector("u32", 4),
         "ivec2" => vector("i32", 2),
+        "ivec3" => vector("i32", 3),
         name => (name.to_owned(), *sizes.get(name).ok_or(format!("type '{name}' is not known to the host"))?),
     })
 }

@@ -26,7 +26,7 @@ pub struct Binding {
     pub format: String,
     /// An array without a size.
     pub unbounded: bool,
-    /// Neither is restricted where the shader does not say `readonly` or `writeonly`. For images; buffers say it per member.
+    /// Neither is restricted where the shader does not say `readonly` or `writeonly`. A buffer is what all its members are.
     pub readable: bool,
     pub writable: bool,
 }
@@ -132,8 +132,8 @@ impl<'a> Types<'a> {
             kind,
             format: image_format(element),
             unbounded,
-            readable: !self.is_decorated(variable, Decoration::NonReadable),
-            writable: !self.is_decorated(variable, Decoration::NonWritable),
+            readable: !self.is_restricted(variable, element, Decoration::NonReadable),
+            writable: !self.is_restricted(variable, element, Decoration::NonWritable),
         })
     }
 
@@ -147,6 +147,21 @@ impl<'a> Types<'a> {
             .annotations
             .iter()
             .any(|i| i.class.opcode == Op::Decorate && i.operands == [Operand::IdRef(id), Operand::Decoration(wanted)])
+    }
+
+    /// The variable is decorated, or every member of its block.
+    fn is_restricted(&self, variable: Word, element: &Instruction, wanted: Decoration) -> bool {
+        let Some(block) = element.result_id.filter(|_| element.class.opcode == Op::TypeStruct) else {
+            return self.is_decorated(variable, wanted);
+        };
+        let of_member = |i: &&Instruction| match i.operands.as_slice() {
+            [Operand::IdRef(target), Operand::LiteralBit32(_), Operand::Decoration(decoration)] => {
+                *target == block && *decoration == wanted
+            }
+            _ => false,
+        };
+        let members = self.module.annotations.iter().filter(of_member).count();
+        self.is_decorated(variable, wanted) || (members > 0 && members == element.operands.len())
     }
 
     fn decoration(&self, id: Word, wanted: Decoration) -> Option<u32> {

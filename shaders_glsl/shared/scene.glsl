@@ -196,6 +196,9 @@ struct FrameData {
     /// Samples per pixel of this frame, at least 1; and the share of the pixels that take one more, 0..1.
     uint samples;
     float more_samples;
+    /// The frame's origin is at this multiple of 2^log2_origin_step metres from the world's; modulo 2^32.
+    int log2_origin_step;
+    ivec3 origin_steps;
     uint padding;
 };
 

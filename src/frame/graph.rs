@@ -4,54 +4,23 @@
 //! frame costs the host a few calls per pass and no memory.
 
 use super::globals::Globals;
-use crate::gpu::{Commands, ComputePipeline, DescriptorSet, Gpu, GpuError, Image, ImageInfo, SetLayout, Timer, load_shader, vk};
-use shader_compiler::{Binding, BindingKind, Precision};
-use std::collections::HashSet;
-use std::ffi::CString;
+use super::pass::{Access, Hazards, Pass, PassBuilder, Traffic, Use, Work, label};
+use super::resources::{BufferHandle, History, ImageHandle, Parity, Resources};
+use crate::gpu::{Commands, DescriptorSet, Gpu, GpuError, Image, ImageInfo, SetLayout, Timer, vk};
+use shader_compiler::Precision;
 use std::sync::Arc;
 
-/// An image of the frame under construction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct ImageHandle(usize);
-
-/// Declares images and passes, in the order of the frame.
+/// Declares images, buffers and passes, in the order of the frame.
 pub struct FrameBuilder<'a> {
-    gpu: &'a Gpu,
-    globals: Arc<SetLayout>,
-    structure: &'a str,
-    precision: Precision,
+    pub(super) gpu: &'a Gpu,
+    pub(super) globals: Arc<SetLayout>,
+    pub(super) structure: &'a str,
+    pub(super) precision: Precision,
     constants: Vec<(u32, u32)>,
-    extent: [u32; 2],
-    images: Vec<(&'static str, Image)>,
+    pub(super) extent: [u32; 2],
+    pub(super) resources: Resources,
     passes: Vec<Pass>,
-    /// What has been touched since the last barrier.
-    read: HashSet<ImageHandle>,
-    written: HashSet<ImageHandle>,
-}
-
-struct Pass {
-    name: &'static str,
-    label: CString,
-    pipeline: ComputePipeline,
-    set: DescriptorSet,
-    /// Workgroups.
-    groups: [u32; 3],
-    barrier: bool,
-    traffic: Traffic,
-}
-
-/// Bytes that a pass moves by its declaration: each value of each image once.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Traffic {
-    pub read: u64,
-    pub written: u64,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Access {
-    Read,
-    Write,
-    Update,
+    hazards: Hazards,
 }
 
 impl<'a> FrameBuilder<'a> {
@@ -72,10 +41,9 @@ impl<'a> FrameBuilder<'a> {
             precision,
             constants,
             extent,
-            images: Vec::new(),
+            resources: Resources::default(),
             passes: Vec::new(),
-            read: HashSet::new(),
-            written: HashSet::new(),
+            hazards: Hazards::default(),
         }
     }
 
@@ -88,10 +56,43 @@ impl<'a> FrameBuilder<'a> {
         self.extent
     }
 
+    /// Of the picture.
+    pub fn pixels(&self) -> u32 {
+        self.extent[0] * self.extent[1]
+    }
+
     /// An image of the picture's size, zero at first. Its name is that of its AOV.
     pub fn image(&mut self, name: &'static str, format: vk::Format) -> Result<ImageHandle, GpuError> {
-        self.images.push((name, self.gpu.create_image(name, ImageInfo::storage(format, self.extent))?));
-        Ok(ImageHandle(self.images.len() - 1))
+        self.resources.image(self.gpu, name, ImageInfo::storage(format, self.extent))
+    }
+
+    /// An image of the picture's size and that of the frame before. Its name is that of its AOV, which shows the current one.
+    pub fn image_history(&mut self, name: &'static str, format: vk::Format) -> Result<History<ImageHandle>, GpuError> {
+        self.resources.image_history(self.gpu, name, ImageInfo::storage(format, self.extent))
+    }
+
+    /// A storage buffer of `size` bytes; what it holds when a frame begins is undefined.
+    ///
+    /// # Errors
+    /// More bytes than a kernel of this device can see of one buffer.
+    pub fn buffer(&mut self, name: &str, size: u64) -> Result<BufferHandle, GpuError> {
+        self.resources.buffer(self.gpu, name, size)
+    }
+
+    /// A storage buffer that passes update in place from frame to frame. Zero after a restart.
+    ///
+    /// # Errors
+    /// As [`Self::buffer`].
+    pub fn kept_buffer(&mut self, name: &str, size: u64) -> Result<BufferHandle, GpuError> {
+        self.resources.kept_buffer(self.gpu, name, size)
+    }
+
+    /// A storage buffer of `size` bytes and that of the frame before.
+    ///
+    /// # Errors
+    /// As [`Self::buffer`].
+    pub fn buffer_history(&mut self, name: &str, size: u64) -> Result<History<BufferHandle>, GpuError> {
+        self.resources.buffer_history(self.gpu, name, size)
     }
 
     /// An image of radiance, or of anything else that the frame's precision is enough for, declared `COLOR_FORMAT` in shaders. What a
@@ -106,135 +107,40 @@ impl<'a> FrameBuilder<'a> {
 
     /// The next pass: a kernel by its stem below shaders_glsl/, over every pixel.
     pub fn pass(&mut self, name: &'static str, shader: &'static str) -> PassBuilder<'_, 'a> {
-        PassBuilder { name, shader, uses: Vec::new(), constants: self.constants.clone(), groups: None, frame: self }
+        let constants = self.constants.clone();
+        PassBuilder::new(self, name, shader, constants)
+    }
+
+    /// The next pass writes a word all over a buffer.
+    pub fn fill(&mut self, name: &'static str, buffer: BufferHandle, word: u32) {
+        let resource = buffer.into();
+        let bytes = self.resources.byte_size(resource);
+        self.push(name, Work::Fill { buffer, word }, &[Use { variable: "", resource, access: Access::Write, bytes }]);
+    }
+
+    pub(super) fn push(&mut self, name: &'static str, work: Work, uses: &[Use]) {
+        let barrier = self.hazards.needs_barrier(uses);
+        self.passes.push(Pass { name, label: label(name), work, barrier, traffic: Traffic::of(uses) });
     }
 
     pub fn build(self) -> FrameGraph {
-        FrameGraph { images: self.images, passes: self.passes }
-    }
-
-    fn traffic(&self, uses: &[(&str, ImageHandle, Access)]) -> Traffic {
-        uses.iter().fold(Traffic::default(), |sum, &(_, image, access)| {
-            let bytes = self.images[image.0].1.byte_size();
-            let counted = |counts: bool| if counts { bytes } else { 0 };
-            Traffic { read: sum.read + counted(access != Access::Write), written: sum.written + counted(access != Access::Read) }
-        })
-    }
-
-    /// Whether a pass with these uses must wait for the ones before it.
-    fn needs_barrier(&mut self, uses: &[(&str, ImageHandle, Access)]) -> bool {
-        let conflicts = |&(_, image, access): &(&str, ImageHandle, Access)| {
-            self.written.contains(&image) || (access != Access::Read && self.read.contains(&image))
-        };
-        let barrier = uses.iter().any(conflicts);
-        if barrier {
-            self.read.clear();
-            self.written.clear();
-        }
-        for &(_, image, access) in uses {
-            if access == Access::Read {
-                self.read.insert(image)
-            } else {
-                self.written.insert(image)
-            };
-        }
-        barrier
-    }
-}
-
-/// One pass under construction; each use names the shader's variable.
-pub struct PassBuilder<'b, 'a> {
-    frame: &'b mut FrameBuilder<'a>,
-    name: &'static str,
-    shader: &'static str,
-    uses: Vec<(&'static str, ImageHandle, Access)>,
-    constants: Vec<(u32, u32)>,
-    groups: Option<u32>,
-}
-
-impl PassBuilder<'_, '_> {
-    pub fn reads(mut self, variable: &'static str, image: ImageHandle) -> Self {
-        self.uses.push((variable, image, Access::Read));
-        self
-    }
-
-    pub fn writes(mut self, variable: &'static str, image: ImageHandle) -> Self {
-        self.uses.push((variable, image, Access::Write));
-        self
-    }
-
-    /// Reads and writes each pixel's own value.
-    pub fn updates(mut self, variable: &'static str, image: ImageHandle) -> Self {
-        self.uses.push((variable, image, Access::Update));
-        self
-    }
-
-    /// A specialization constant of this pass's own.
-    pub fn constant(mut self, id: u32, value: u32) -> Self {
-        self.constants.push((id, value));
-        self
-    }
-
-    /// So many workgroups instead of one invocation per pixel.
-    pub fn groups(mut self, count: u32) -> Self {
-        self.groups = Some(count);
-        self
-    }
-
-    /// # Errors
-    /// The declaration differs from the shader's: a variable without an image, an image without a variable, other access or format.
-    pub fn add(self) -> Result<(), GpuError> {
-        let frame = self.frame;
-        let spirv = load_shader(self.shader, frame.structure, frame.precision)?;
-        let pipeline = ComputePipeline::new(frame.gpu, self.name, &spirv, &frame.globals, &self.constants)?;
-        let set = DescriptorSet::new(pipeline.own_layout())?;
-        let bindings: Vec<&Binding> = pipeline.reflection().bindings.iter().filter(|b| b.set == 1).collect();
-        check(&bindings, &self.uses).map_err(|message| GpuError::Interface { shader: self.shader.to_owned(), message })?;
-        for binding in bindings {
-            let (_, handle, _) = self.uses.iter().find(|(variable, ..)| *variable == binding.name).expect("checked");
-            let image = &frame.images[handle.0].1;
-            check_format(binding, image).map_err(|message| GpuError::Interface { shader: self.shader.to_owned(), message })?;
-            set.write_storage_image(binding.binding, image);
-        }
-        let barrier = frame.needs_barrier(&self.uses);
-        let label = CString::new(self.name).expect("pass names have no zeros");
-        let [width, height] = frame.extent;
-        let groups = self.groups.map_or_else(|| pipeline.groups([width, height, 1]), |count| [count, 1, 1]);
-        let traffic = frame.traffic(&self.uses);
-        frame.passes.push(Pass { name: self.name, label, pipeline, set, groups, barrier, traffic });
-        Ok(())
-    }
-}
-
-/// The shader's variables against what the pass declares.
-fn check(bindings: &[&Binding], uses: &[(&'static str, ImageHandle, Access)]) -> Result<(), String> {
-    for binding in bindings {
-        let Some((.., access)) = uses.iter().find(|(variable, ..)| *variable == binding.name) else {
-            return Err(format!("the pass declares nothing for '{}'", binding.name));
-        };
-        let declared = (*access != Access::Write, *access != Access::Read);
-        if binding.kind != BindingKind::StorageImage || (binding.readable, binding.writable) != declared {
-            return Err(format!("'{}' is declared for another use: {access:?}", binding.name));
-        }
-    }
-    match uses.iter().find(|(variable, ..)| !bindings.iter().any(|b| b.name == *variable)) {
-        Some((variable, ..)) => Err(format!("it has no '{variable}'")),
-        None => Ok(()),
-    }
-}
-
-fn check_format(binding: &Binding, image: &Image) -> Result<(), String> {
-    match image.format_qualifier() {
-        qualifier if qualifier == binding.format => Ok(()),
-        qualifier => Err(format!("'{}' is declared {}, its image is {qualifier}", binding.name, binding.format)),
+        FrameGraph { resources: self.resources, passes: self.passes, parity: 0, reset: true }
     }
 }
 
 /// A frame that is ready to be recorded.
 pub struct FrameGraph {
-    images: Vec<(&'static str, Image)>,
+    resources: Resources,
     passes: Vec<Pass>,
+    /// Of the frame recorded last.
+    parity: Parity,
+    /// What is kept is made zero before the next frame.
+    reset: bool,
 }
+
+/// Where passes do their work.
+const STAGES: vk::PipelineStageFlags =
+    vk::PipelineStageFlags::from_raw(vk::PipelineStageFlags::COMPUTE_SHADER.as_raw() | vk::PipelineStageFlags::TRANSFER.as_raw());
 
 impl FrameGraph {
     pub fn pass_names(&self) -> impl Iterator<Item = &'static str> {
@@ -251,31 +157,45 @@ impl FrameGraph {
         self.passes.len() as u32 + 1
     }
 
-    /// Everything that a pass puts out, by name.
+    /// Everything that a pass put out in the frame recorded last, by name.
     pub fn images(&self) -> impl Iterator<Item = (&'static str, &Image)> {
-        self.images.iter().map(|(name, image)| (*name, image))
+        self.resources.named().map(|(name, handle)| (name, self.image_of(handle)))
     }
 
     pub fn image_of(&self, handle: ImageHandle) -> &Image {
-        &self.images[handle.0].1
+        self.resources.image_of(handle, self.parity)
     }
 
     pub fn image(&self, name: &str) -> Option<&Image> {
         self.images().find(|(n, _)| *n == name).map(|(_, image)| image)
     }
 
+    /// The next frame sees nothing of those before it.
+    pub fn reset(&mut self) {
+        self.reset = true;
+    }
+
     /// All passes in order; the first waits for whatever was recorded or submitted before, builds of acceleration structures included.
-    pub fn record(&self, commands: &Commands, globals: &DescriptorSet, timer: &mut Timer) {
-        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
+    pub fn record(&mut self, commands: &Commands, globals: &DescriptorSet, timer: &mut Timer) {
+        self.parity ^= 1;
         timer.reset(commands);
-        commands.barrier(vk::PipelineStageFlags::ALL_COMMANDS, compute);
+        commands.barrier(vk::PipelineStageFlags::ALL_COMMANDS, STAGES);
+        if std::mem::take(&mut self.reset) && self.resources.keeps_anything() {
+            self.resources.reset(commands);
+            commands.barrier(vk::PipelineStageFlags::TRANSFER, STAGES);
+        }
         timer.mark(commands, 0);
         for (index, pass) in (1..).zip(&self.passes) {
             commands.begin_label(&pass.label);
             if pass.barrier {
-                commands.barrier(compute, compute);
+                commands.barrier(STAGES, STAGES);
             }
-            commands.dispatch(&pass.pipeline, &[globals, &pass.set], &[], pass.groups);
+            match &pass.work {
+                Work::Dispatch { pipeline, sets, groups } => {
+                    commands.dispatch(pipeline, &[globals, &sets[self.parity % sets.len()]], &[], *groups);
+                }
+                Work::Fill { buffer, word } => commands.fill_buffer(self.resources.buffer_of(*buffer, self.parity), *word),
+            }
             commands.end_label();
             timer.mark(commands, index);
         }

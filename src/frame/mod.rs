@@ -2,6 +2,10 @@
 
 mod globals;
 mod graph;
+mod pass;
+mod resources;
 
 pub use globals::{Globals, GlobalsInfo, STRUCTURE_TEXELS, TOP_LEVEL};
-pub use graph::{FrameBuilder, FrameGraph, ImageHandle, PassBuilder, Traffic};
+pub use graph::{FrameBuilder, FrameGraph};
+pub use pass::{PassBuilder, Traffic};
+pub use resources::{BufferHandle, History, ImageHandle, Resource};

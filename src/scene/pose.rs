@@ -104,6 +104,13 @@ impl Pose {
         self.origin
     }
 
+    /// The origin in whole steps, modulo 2^32, and the logarithm to base 2 of a step in metres: for coordinates of cells, exact wherever
+    /// the scene is.
+    pub fn origin_steps(&self) -> ([i32; 3], i32) {
+        let steps = (self.origin / self.step).to_array().map(|steps| steps as i64 as i32);
+        (steps, self.step.log2() as i32)
+    }
+
     /// Metres.
     pub fn radius(&self) -> f64 {
         self.radius

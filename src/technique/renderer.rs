@@ -93,7 +93,7 @@ impl Renderer {
         placed.write(slot, scene, pose);
         self.globals.write(slot, &self.frame_data(slot), &self.parameters);
         let PreparedScene { structure, pose, .. } = &mut self.prepared;
-        let (instances, graph, set, timer) = (pose.instances(), &self.graph, self.globals.set(slot), &mut self.timers[slot]);
+        let (instances, graph, set, timer) = (pose.instances(), &mut self.graph, self.globals.set(slot), &mut self.timers[slot]);
         self.ring.submit(slot, |commands| {
             structure.update(commands, slot, instances);
             graph.record(commands, set, timer);
@@ -111,6 +111,7 @@ impl Renderer {
     /// A camera that is not there; the device is lost.
     pub fn restart(&mut self, seed: u32, first_frame: u32) -> Result<(), RenderError> {
         self.finish()?;
+        self.graph.reset();
         (self.settings.seed, self.first_frame, self.frame, self.first_sample) = (seed, first_frame, 0, 0);
         if !self.prepared.scene.animation.is_empty() {
             // Twice, so that nothing seems to have moved.
@@ -201,6 +202,7 @@ impl Renderer {
 
     fn frame_data(&self, slot: usize) -> FrameData {
         let [camera, previous_camera] = self.prepared.pose.cameras(self.settings.extent);
+        let (origin_steps, log2_origin_step) = self.prepared.pose.origin_steps();
         let mut data = FrameData {
             frame: self.frame,
             camera,
@@ -210,6 +212,8 @@ impl Renderer {
             first_sample: self.first_sample,
             samples: self.samples as u32,
             more_samples: self.samples.fract() as f32,
+            log2_origin_step,
+            origin_steps,
             ..Default::default()
         };
         self.prepared.describe(slot, &mut data);
