@@ -18,17 +18,16 @@
 #include "lib/ray_cone.glsl"
 #include "lib/sampler.glsl"
 #include "paths/hit.glsl"
+#include "paths/light_candidates.glsl"
 #include "paths/primary.glsl"
 #include "paths/terms.glsl"
-
-const uint DIRECT_MIS = 0u;
-const uint DIRECT_NEE = 1u;
-const uint DIRECT_BSDF = 2u;
 
 /// Pairs of sample dimensions that a vertex takes: light, point on it, direction, lobe and roulette.
 const uint PAIRS_PER_VERTEX = 4u;
 /// Where those of further shadow rays at the first vertex begin: behind the deepest path's.
 const uint EXTRA_PAIRS = 1u + PAIRS_PER_VERTEX * 66u;
+/// And those that select among candidate lights: behind these, 16 for each vertex.
+const uint SELECTION_PAIRS = EXTRA_PAIRS + 2u * 16u;
 
 const uint NO_VERTEX = ~0u;
 
@@ -93,16 +92,12 @@ uint alpha_seed(Path path) {
     return EFFECT_ALPHA_BLEND ? pcg3d(uvec3(path.numbers.scramble, path.numbers.index, path.vertex)).x : 0u;
 }
 
-float power_heuristic(float a, float b) {
-    return a * a / max(a * a + b * b, 1e-30);
-}
-
 /// For light found by following the path's ray, against light sampling with density `light_pdf`.
 float emission_weight(Path path, float light_pdf) {
     if (path.delta || DIRECT == DIRECT_BSDF) {
         return 1.0;
     }
-    return DIRECT == DIRECT_NEE ? 0.0 : power_heuristic(path.pdf, light_pdf);
+    return DIRECT == DIRECT_NEE ? 0.0 : power_heuristic(path.pdf, competing_pdf(light_pdf));
 }
 
 /// Where light belongs that the path's ray has found. `from_light`: straight, not reflected.
@@ -134,16 +129,15 @@ void add_environment(Path path, inout Terms terms) {
 const Ray NO_RAY = Ray(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), -1.0);
 
 /// Looks for light at a vertex, by one of `rays` shadow rays; nothing waits where there is none to be found.
-Pending sample_direct(Path path, HitPoint point, vec3 wo, vec4 u, float rays) {
+Pending sample_direct(Path path, HitPoint point, vec3 wo, vec4 u, float selection, float rays) {
     Pending pending;
     pending.ray = NO_RAY;
-    LightSample light;
-    if (!sample_light(point.origin.position, u, light) || (DIRECT == DIRECT_BSDF && !light.delta)) {
+    ChosenLight light;
+    if (!choose_light(point.origin.position, point.surface, wo, u, selection, light)) {
         return pending;
     }
-    BsdfValue value = bsdf_evaluate(point.surface, wo, light.direction);
-    float weight = light.delta || DIRECT == DIRECT_NEE ? 1.0 : power_heuristic(light.pdf, value.pdf);
-    vec3 radiance = light.radiance * (weight / (light.pdf * rays));
+    BsdfValue value = light.value;
+    vec3 radiance = light.radiance / rays;
     vec3 albedo = diffuse_albedo(point.surface);
     if (path.vertex == path.filter_vertex) {
         pending.term = TERM_DIRECT;
@@ -319,8 +313,11 @@ void trace_pixels(uint group, uint thread) {
                 float rays = path.vertex == 0u ? float(parameters.first_shadow_rays) : 1.0;
                 shadow_rays = (scatters ? uint(rays) : shadow_rays) - 1u;
                 path.numbers.dimension = scatters ? 1u + PAIRS_PER_VERTEX * path.vertex : EXTRA_PAIRS + 2u * shadow_rays;
-                vec2 choice = sample_2d(path.numbers);
-                pending = sample_direct(path, point, wo, vec4(choice, sample_2d(path.numbers)), rays);
+                vec4 light;
+                light.xy = sample_2d(path.numbers);
+                light.zw = sample_2d(path.numbers);
+                path.numbers.dimension = SELECTION_PAIRS + 16u * path.vertex + shadow_rays;
+                pending = sample_direct(path, point, wo, light, sample_1d(path.numbers), rays);
                 pending.alpha_seed = alpha_seed(path) + 1u + shadow_rays;
                 if (shadow_rays == 0u) {
                     path.numbers.dimension = 3u + PAIRS_PER_VERTEX * path.vertex;
