@@ -20,6 +20,7 @@ const DEFAULT_SAMPLES: u32 = 64;
 
 /// Render a glTF scene, or a built-in one, to EXR and PNG files
 #[derive(Debug, clap::Args)]
+#[command(group = clap::ArgGroup::new("wish").multiple(true))]
 pub struct Args {
     /// A .gltf or .glb file, or a built-in scene's name
     #[arg(default_value = "cornell")]
@@ -78,13 +79,13 @@ pub struct Args {
     #[arg(long, value_name = "NAME|INDEX")]
     pub device: Option<String>,
     /// Milliseconds that a frame may take: technique and samples are chosen from what was measured on this device, and adapted while rendering
-    #[arg(long, value_name = "MS", value_parser = arguments::positive, conflicts_with = "spp")]
+    #[arg(long, value_name = "MS", value_parser = arguments::positive, conflicts_with = "spp", group = "wish")]
     pub budget_ms: Option<f32>,
     /// Mean FLIP that a frame should reach, as cheaply as possible; with --budget-ms within it
-    #[arg(long, value_name = "FLIP", value_parser = arguments::positive, conflicts_with = "spp")]
+    #[arg(long, value_name = "FLIP", value_parser = arguments::positive, conflicts_with = "spp", group = "wish")]
     pub target_flip: Option<f32>,
     /// Measure this device and scene anew for --budget-ms and --target-flip; otherwise it is done once
-    #[arg(long)]
+    #[arg(long, requires = "wish")]
     pub calibrate: bool,
     /// Exposure of PNG files: radiance is multiplied by 2^EV
     #[arg(long, value_name = "EV", value_parser = arguments::finite, allow_hyphen_values = true, default_value = "0")]

@@ -4,6 +4,8 @@
 mod glb;
 
 mod bad_scenes;
+mod bench;
+mod budget;
 mod diff;
 mod inspect;
 mod readme;
