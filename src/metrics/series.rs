@@ -9,8 +9,8 @@ use super::statistics::quantile;
 /// operating system disturbs do not widen it.
 ///
 /// Near the ends of a short series, where no order statistic lies far enough out, the interval ends at the extreme value. Coverage of
-/// 2,000 intervals of the median in tests/statistics/intervals.rs, of 100 values that each resemble the last by 0 / 0.5 / 0.8: about
-/// 95 / 94 / 92 %.
+/// 2,000 intervals of the median in tests/statistics/intervals.rs, of values that each resemble the last by 0 (100 of them), 0.5 (100), 0.8 (200): about
+/// 97, 94 and 92 %.
 pub fn quantile_of_series(values: &[f64], at: f64) -> Result<Estimate, SampleError> {
     check(values)?;
     let value = quantile(values.to_vec(), at);
@@ -35,7 +35,8 @@ fn independent_values(series: &[f64]) -> f64 {
     }
     let pairs = (0..count / 2).map(|pair| (covariance(2 * pair) + covariance(2 * pair + 1)) / variance);
     let sum: f64 = pairs.take_while(|pair| *pair > 0.0).sum();
-    (count as f64 / (2.0 * sum - 1.0)).clamp(1.0, count as f64)
+    // Values that alternate would be worth more than independent ones; that much is not claimed.
+    (count as f64 / (2.0 * sum - 1.0).max(1.0)).max(1.0)
 }
 
 #[cfg(test)]

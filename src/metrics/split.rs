@@ -6,7 +6,7 @@
 //! U-statistics: unbiased whatever the distribution (Hoeffding 1948).
 //!
 //! Intervals are those of the mean of the jackknife's pseudo-values, one a seed, whose mean is the U-statistic itself (Arvesen 1969).
-//! They are conservative where the bias is far below the noise: 98 % instead of 95 %.
+//! They are conservative where the bias is far below the noise: 97 to 98 % instead of 95 %.
 
 use super::estimate::Estimate;
 use super::{MetricError, Pair, relmse};
@@ -174,10 +174,10 @@ mod tests {
         close(exact.bias2.value, 5.5 / 3.0);
         close(exact.variance.value, 15.0 / 3.0 - 5.5 / 3.0);
         close(exact.mse.value, 5.0);
-        let noisy = split(&images, &reference, Some(&grey([0.5, 0.1])), Weighting::Absolute).unwrap();
-        close(noisy.bias2.value, 5.5 / 3.0 - 0.3);
+        let noisy = split(&images, &reference, Some(&grey([0.5, 0.125])), Weighting::Absolute).unwrap();
+        close(noisy.bias2.value, 5.5 / 3.0 - 0.3125);
         close(noisy.variance.value, exact.variance.value);
-        assert!(noisy.bias2.high > exact.bias2.high - 0.3, "the reference's noise widens the interval");
+        assert!(noisy.bias2.high > exact.bias2.high - 0.3125, "the reference's noise widens the interval");
         let relative = split(&images, &reference, None, Weighting::Relative).unwrap();
         close(relative.mse.value, ((1.0 + 9.0 + 4.0) / 1.01 + 16.0 / 4.01) / 6.0);
     }

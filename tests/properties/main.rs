@@ -5,6 +5,8 @@ mod common;
 #[path = "../common/glb.rs"]
 mod glb;
 
+#[path = "../common/random.rs"]
+mod random;
 #[path = "../common/surface.rs"]
 mod surface;
 

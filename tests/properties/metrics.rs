@@ -1,6 +1,6 @@
 //! Error measures rank pictures as a person would, and the tests of statistics/ keep the false-alarm rate that they state.
 
-use super::common::normal;
+use super::random::normal;
 use pathspace::bench::figure::{FIGURES, Group};
 use pathspace::display::{Image, ToneMapping};
 use pathspace::metrics::accuracy::{Reference, Shot};

@@ -1,7 +1,7 @@
 //! 95 % confidence intervals hold the truth 95 % of the time. Of 2,000 intervals, whose share has a standard deviation of 0.5 %, a
 //! true coverage of 95 % falls outside 93 to 97 % once in 20,000 changes of the seed.
 
-use super::common::normal;
+use super::random::normal;
 use pathspace::metrics::Estimate;
 use pathspace::metrics::series::quantile_of_series;
 use rand::SeedableRng;
@@ -36,7 +36,7 @@ fn intervals_of_means_cover_normal_samples() {
     }
 }
 
-/// Errors of path tracing lean to one side; Student's interval covers 91, 90 and 83 % here.
+/// Errors of path tracing lean to one side; Student's interval covers 91, 93 and 82 % here.
 #[test]
 fn intervals_of_means_nearly_cover_skewed_samples() {
     for (count, sigma, least) in [(8, 0.5, 0.92), (16, 0.5, 0.92), (8, 1.0, 0.87)] {

@@ -1,6 +1,6 @@
 //! Bias and variance come apart as they were put in.
 
-use super::common::normal;
+use super::random::normal;
 use pathspace::display::Image;
 use pathspace::metrics::split::{Split, Weighting, split};
 use pathspace::metrics::statistics::BatchMeans;
@@ -33,13 +33,14 @@ fn parts_are_unbiased() {
         let mut rng = Pcg32::seed_from_u64(1);
         let repetitions: Vec<Split> = (0..1000).map(|_| eight_seeds(bias, &mut rng)).collect();
         let (bias2, variance) = (bias * bias / 2.0, NOISE * NOISE);
-        let parts: [(fn(&Split) -> f64, f64); 3] =
-            [(|s| s.bias2.value, bias2), (|s| s.variance.value, variance), (|s| s.mse.value, bias2 + variance)];
-        for (part, truth) in parts {
+        let check = |part: fn(&Split) -> f64, truth: f64| {
             let mean: BatchMeans = repetitions.iter().map(part).collect();
             let z = (mean.mean - truth) / mean.variance_of_mean().sqrt();
             assert!(z.abs() < 4.0, "bias {bias}: {} instead of {truth}, z = {z}", mean.mean);
-        }
+        };
+        check(|split| split.bias2.value, bias2);
+        check(|split| split.variance.value, variance);
+        check(|split| split.mse.value, bias2 + variance);
     }
 }
 
