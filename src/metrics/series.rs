@@ -9,8 +9,8 @@ use super::statistics::quantile;
 /// operating system disturbs do not widen it.
 ///
 /// Near the ends of a short series, where no order statistic lies far enough out, the interval ends at the extreme value. Coverage of
-/// 2,000 intervals of the median in tests/statistics/intervals.rs, of values that each resemble the last by 0 (100 of them), 0.5 (100), 0.8 (200): about
-/// 97, 94 and 92 %.
+/// 2,000 intervals of the median in tests/statistics/intervals.rs: 97 % of 100 independent values, 94 % of 100 that resemble the last
+/// by 0.5, 92 % of 200 that resemble it by 0.8.
 pub fn quantile_of_series(values: &[f64], at: f64) -> Result<Estimate, SampleError> {
     check(values)?;
     let value = quantile(values.to_vec(), at);
