@@ -17,4 +17,5 @@ mod stage;
 pub mod suite;
 
 pub use figure::{Better, FigureKind};
+pub use log::{Log, LogError};
 pub use record::{Figure, Record};

@@ -142,6 +142,11 @@ pub struct Pictures {
 }
 
 impl Figure {
+    /// No number of it is NaN or infinite, which JSON cannot hold.
+    pub fn is_finite(&self) -> bool {
+        [self.value, self.low, self.high].iter().chain(&self.samples).all(|number| number.is_finite())
+    }
+
     /// The intervals of the two have a value in common: no difference is to be shown.
     pub fn overlaps(&self, other: &Figure) -> bool {
         self.low <= other.high && other.low <= self.high

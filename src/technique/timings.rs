@@ -21,7 +21,7 @@ pub struct Recorder {
 }
 
 /// `--timings`. Times are milliseconds.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Timings {
     pub version: u32,
     pub device: String,

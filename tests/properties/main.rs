@@ -7,6 +7,8 @@ mod glb;
 
 #[path = "../common/random.rs"]
 mod random;
+#[path = "../common/records.rs"]
+mod records;
 #[path = "../common/surface.rs"]
 mod surface;
 
@@ -16,6 +18,7 @@ mod builtin;
 mod effects;
 mod gpu_kernel;
 mod metrics;
+mod results_log;
 mod scene_animation;
 mod scene_materials;
 mod scene_meshes;
