@@ -2,6 +2,8 @@
 
 pub mod accuracy;
 pub mod calibrate;
+pub mod change;
+pub mod compare;
 pub mod figure;
 pub mod front;
 pub mod log;

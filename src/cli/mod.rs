@@ -4,6 +4,7 @@
 
 pub mod arguments;
 pub mod bench;
+pub mod bench_compare;
 pub mod budget;
 pub mod devices;
 pub mod diff;
@@ -48,6 +49,7 @@ enum Command {
     Diff(diff::Args),
     Bench(bench::Args),
     Report(report::Args),
+    BenchCompare(bench_compare::Args),
 }
 
 impl Command {
@@ -59,6 +61,7 @@ impl Command {
             Command::Diff(args) => diff::run(args),
             Command::Bench(args) => bench::run(args),
             Command::Report(args) => report::run(args),
+            Command::BenchCompare(args) => bench_compare::run(args),
         }
     }
 }

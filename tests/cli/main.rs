@@ -2,9 +2,13 @@
 
 #[path = "../common/glb.rs"]
 mod glb;
+#[path = "../common/records.rs"]
+mod records;
 
 mod bad_scenes;
 mod bench;
+mod bench_compare;
+mod bench_scripts;
 mod budget;
 mod diff;
 mod inspect;

@@ -7,7 +7,7 @@ const README: &str = include_str!("../../README.md");
 #[test]
 fn readme_names_every_option_of_every_subcommand() {
     let directory = tempfile::tempdir().unwrap();
-    for subcommand in ["render", "inspect", "devices", "diff", "bench", "report"] {
+    for subcommand in ["render", "inspect", "devices", "diff", "bench", "bench-compare", "report"] {
         let help = run(directory.path(), &[subcommand, "--help"]).stdout;
         let words = help.split(|c: char| c.is_whitespace() || "`'[],.;:".contains(c));
         // --verbose, --quiet, --help and --version are every program's.

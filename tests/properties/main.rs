@@ -14,6 +14,7 @@ mod surface;
 
 mod accel_parity;
 mod assets;
+mod bench_compare;
 mod builtin;
 mod effects;
 mod gpu_kernel;
