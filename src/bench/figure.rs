@@ -53,7 +53,7 @@ use Group::{Error, Fault, Memory, Split, Temporal, Time};
 
 /// In the order of tables.
 pub static FIGURES: &[FigureKind] = &[
-    kind(Time, "frame_ms", "frame", "ms", Less, "GPU time of a frame: median over frames, warm"),
+    kind(Time, "frame_ms", "frame", "ms", Less, "GPU time of a frame, or of all that a picture accumulates: median over frames, warm"),
     kind(Time, "frame_ms_p95", "frame, 95 %", "ms", Less, "GPU time that 95 % of the frames stay below"),
     kind(Time, "cpu_ms", "host", "ms", Less, "CPU time to record and submit a frame: median over frames"),
     kind(Time, "first_frame_ms", "first frame", "ms", Less, "GPU time of the first frame, where drivers may compile"),

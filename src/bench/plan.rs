@@ -128,7 +128,7 @@ impl Place<'_> {
     fn switches(&self, row: &SwitchRow) -> Result<Vec<Point>, SuiteError> {
         let technique = self.technique(&row.technique)?;
         self.check(technique, &row.settings)?;
-        let frames = self.frames(technique, &[row.frames]).last().copied().unwrap_or(1);
+        let frames = if self.scene.moves == Moves::Nothing { row.frames } else { self.frames(technique, &[]).last().copied().unwrap_or(1) };
         let mut base = self.point(technique, row.spp, frames, row.settings.clone());
         base.trace = row.trace.clone().unwrap_or(base.trace);
         let (base_key, base_value) = (key_of(&base), self.base_value(technique, row)?);

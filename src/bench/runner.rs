@@ -2,7 +2,7 @@
 
 use super::log::{Log, LogError};
 use super::plan::Planned;
-use super::record::{Figure, Moves, PassFigure, Pictures, Provenance, Record, ReferenceQuality, VERSION};
+use super::record::{Figure, Moves, PassFigure, Pictures, Point, Provenance, Record, ReferenceQuality, VERSION};
 use super::reference::{Reference, ReferenceCache, Subject};
 use super::shots::Shots;
 use super::stage::Stage;
@@ -16,7 +16,7 @@ use crate::metrics::statistics::quantile;
 use crate::metrics::{self, Estimate, MetricError};
 use crate::scene::LoadError;
 use crate::scene::source::SourceError;
-use crate::technique::{PassTime, RenderError, Timings};
+use crate::technique::{PassTime, RenderError, Settings, Timings};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -88,7 +88,7 @@ impl<'a> Runner<'a> {
         let seeds: Vec<u32> = (1..=self.suite.seeds).collect();
         let shots = Shots::take(self.gpu, &stage.scene, &settings, &planned.point, row.frames, &seeds)?;
         let truth = self.truth(&stage, planned, &shots)?;
-        let mut figures = time_figures(&shots.timings, stage.load_ms);
+        let mut figures = time_figures(&shots.timings, stage.load_ms, frames_of_picture(&settings, &planned.point));
         figures.extend(roofline::figures(&shots.timings, planned.point.size));
         figures.extend(truth.figures);
         let record = Record {
@@ -170,7 +170,12 @@ struct Truth {
     figures: BTreeMap<String, Figure>,
 }
 
-fn time_figures(timings: &Timings, load_ms: f64) -> BTreeMap<String, Figure> {
+/// Frames that become one picture.
+fn frames_of_picture(settings: &Settings, point: &Point) -> f64 {
+    if settings.technique.accumulates { f64::from(point.frames) } else { 1.0 }
+}
+
+fn time_figures(timings: &Timings, load_ms: f64, frames: f64) -> BTreeMap<String, Figure> {
     let build = timings.build_ms;
     let (read, written) = timings.passes.iter().fold((0, 0), |(r, w), pass| (r + pass.bytes_read, w + pass.bytes_written));
     let frame = timings.frame_ms_median;
@@ -186,8 +191,8 @@ fn time_figures(timings: &Timings, load_ms: f64) -> BTreeMap<String, Figure> {
         ("bytes_written", written as f64),
         ("bandwidth", (read + written) as f64 / frame * 1e-6),
     ];
-    let kept = &timings.frame_ms[..timings.frame_ms.len().min(KEPT_SAMPLES)];
-    let series = [("frame_ms", 0.5), ("frame_ms_p95", 0.95)].map(|(key, at)| (key, quantile_of_series(kept, at).ok()));
+    let kept: Vec<f64> = timings.frame_ms.iter().take(KEPT_SAMPLES).map(|ms| ms * frames).collect();
+    let series = [("frame_ms", 0.5), ("frame_ms_p95", 0.95)].map(|(key, at)| (key, quantile_of_series(&kept, at).ok()));
     let mut figures: Vec<(&str, Estimate)> = single.map(|(key, value)| (key, Estimate::exact(value))).into();
     figures.extend(series.into_iter().filter_map(|(key, estimate)| Some((key, estimate?))));
     let finite = |estimate: &Estimate| [estimate.value, estimate.low, estimate.high].iter().all(|value| value.is_finite());

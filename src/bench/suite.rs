@@ -102,6 +102,7 @@ pub struct SwitchRow {
     pub technique: String,
     #[serde(default = "one")]
     pub spp: u32,
+    /// On scenes that stand still; those of a technique that accumulates make one picture, whose time is that of all of them.
     #[serde(default = "one")]
     pub frames: u32,
     /// Beside the switch itself, at the base point too.

@@ -2,6 +2,7 @@
 
 use super::Outcome;
 use super::progress::Progress;
+use crate::bench::log;
 use crate::bench::plan::{self, Planned, Shard};
 use crate::bench::runner::{BenchError, Runner};
 use crate::bench::suite::Suite;
@@ -48,7 +49,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         super::output::print_result(&lines?)?;
         return Ok(Outcome::Done);
     }
-    let results = args.output.join("results.jsonl");
+    let results = args.output.join(log::FILE_NAME);
     if !args.resume && results.exists() {
         bail!("'{}' holds results already: --resume goes on there, another -o begins anew", results.display());
     }
