@@ -10,6 +10,8 @@
 #define LIB_RAY_OFFSET_GLSL
 
 #include "shared/bindings.glsl"
+#include "accel/ray.glsl"
+#include "lib/constants.glsl"
 
 const uint RAY_OFFSET_ERROR_BOUND = 0u;
 /// Metres, for RAY_OFFSET epsilon.
@@ -68,11 +70,6 @@ RayOrigin ray_origin_of_hit(Instance instance, Mesh mesh, uvec3 corners, vec2 ba
     return ray_origin(instance, positions.at[corners.x], positions.at[corners.y], positions.at[corners.z], barycentrics, normal);
 }
 
-/// Where a shadow ray to a light `distance` away ends. A fixed offset is kept from the light, too, as renderers do that know no better.
-float shadow_ray_end(float distance) {
-    return RAY_OFFSET == RAY_OFFSET_ERROR_BOUND ? distance * SHADOW_RAY_END : distance - 2.0 * FIXED_OFFSET;
-}
-
 /// Origin of a ray that leaves along `direction`, on that side of the surface.
 vec3 leave_surface(RayOrigin origin, vec3 direction) {
     vec3 outwards = dot(origin.normal, direction) < 0.0 ? -origin.normal : origin.normal;
@@ -82,6 +79,22 @@ vec3 leave_surface(RayOrigin origin, vec3 direction) {
     vec3 moved = origin.position + dot(abs(origin.normal), origin.error) * outwards;
     // The sum rounds, too: on to the next float outwards.
     return moved + sign(outwards) * abs(moved) * (2.0 * ROUNDING);
+}
+
+/// To just before the point that lies `distance` along the unit `direction` from the surface itself. The ray sets out nearer to it than the
+/// surface is: with the surface's distance it would pass a light close to a large triangle, and leave it in its own shadow.
+/// A fixed offset is kept from the light, too, as renderers do that know no better.
+Ray shadow_ray(RayOrigin origin, vec3 direction, float distance) {
+    vec3 start = leave_surface(origin, direction);
+    if (distance >= FAR_AWAY) {
+        return Ray(start, 0.0, direction, FAR_AWAY);
+    }
+    if (RAY_OFFSET != RAY_OFFSET_ERROR_BOUND) {
+        return Ray(start, 0.0, direction, distance - 2.0 * FIXED_OFFSET);
+    }
+    vec3 way = distance * direction + (origin.position - start);
+    float left = length(way);
+    return Ray(start, 0.0, way / max(left, 1e-30), left * SHADOW_RAY_END);
 }
 
 #endif

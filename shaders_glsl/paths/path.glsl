@@ -152,9 +152,7 @@ Pending sample_direct(Path path, HitPoint point, vec3 wo, vec4 u, float selectio
     }
     vec3 most = max(vec3(pending.diffuse_weight), pending.specular_weight) * pending.radiance;
     if (max(most.r, max(most.g, most.b)) > 0.0) {
-        pending.ray.origin = leave_surface(point.origin, light.direction);
-        pending.ray.direction = light.direction;
-        pending.ray.t_max = shadow_ray_end(light.distance);
+        pending.ray = shadow_ray(point.origin, light.direction, light.distance);
     }
     return pending;
 }
