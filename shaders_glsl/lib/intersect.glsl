@@ -6,12 +6,10 @@
 // never swapped; and an edge function of exactly zero counts as inside instead of being evaluated again in double precision. Rounded
 // products keep the order of the exact ones, so an edge function never has the wrong sign, only sometimes none: a ray that
 // meets an edge hits at least one of its triangles, perhaps both, at the same distance.
-// A hit counts only where its distance exceeds what rounding can make of 0: Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th
-// edition, section 6.8.7. The error grows with the triangle's aspect ratio, which no offset of the ray's origin knows of its neighbours.
+// A hit counts only where the triangle's plane lies ahead by more than rounding can make of 0 (Pharr, Jakob and Humphreys, "Physically Based
+// Rendering", 4th edition, section 6.8.7, bound the distance instead, by millimetres for slivers of metres, which rays then leave through).
 #ifndef LIB_INTERSECT_GLSL
 #define LIB_INTERSECT_GLSL
-
-#include "lib/colour.glsl"
 
 /// 1 / direction, finite: components nearer to zero than 1e-30 count as that, so that a box's side that the origin lies on is never
 /// zero times infinity.
@@ -55,18 +53,26 @@ TriangleRay triangle_ray(vec3 origin, vec3 direction) {
     return TriangleRay(origin, vec3(d.xy / d.z, 1.0 / d.z), axis);
 }
 
-/// Largest error of the sum of `edges` times `z` over the sum of `edges`, whose reciprocal is `inverse`; x, y, z hold all three corners' components
-/// after the shear.
+/// Whether the triangle's plane lies ahead of the ray's origin by more than rounding can make of 0. A hit's distance is a weighted sum of
+/// depths, whose error grows with the triangle's aspect ratio; the side of the plane is known much better. The normal comes from the two
+/// shorter edges, which are nearly perpendicular in a needle.
 ///
-/// A sheared x or y has 5 roundings of itself and z, and an edge function 2 of its products besides what x and y bring in; the weighted sum
-/// of z adds 3 and the 3 of z itself.
-float depth_error(vec3 x, vec3 y, vec3 z, vec3 edges, float inverse) {
-    const float rounding = 5.9604645e-8;
-    float most_x = max_component(abs(x));
-    float most_y = max_component(abs(y));
-    float most_z = max_component(abs(z));
-    float edge_error = 2.0 * rounding * (12.0 * most_x * most_y + 5.0 * most_z * (most_x + most_y));
-    return 3.0 * most_z * (6.0 * rounding * max_component(abs(edges)) + edge_error) * abs(inverse);
+/// Error of dot(normal, to_plane): edges and to_plane have 1 rounding, the normal's products and difference 2, the dot product 3: with
+/// the edges' both, 7 of at most `largest` times |to_plane|, and some to spare.
+bool lies_ahead(vec3 origin, vec3 direction, vec3 p0, vec3 p1, vec3 p2) {
+    const float roundings = 9.0 * 5.9604645e-8;
+    vec3 edges[3] = vec3[3](p2 - p1, p0 - p2, p1 - p0);
+    vec3 lengths = vec3(dot(edges[0], edges[0]), dot(edges[1], edges[1]), dot(edges[2], edges[2]));
+    bool first = lengths.x >= max(lengths.y, lengths.z);
+    bool second = !first && lengths.y >= lengths.z;
+    // The corner opposite to the longest edge, and the edges that meet there.
+    vec3 to_plane = (first ? p0 : second ? p1 : p2) - origin;
+    vec3 a = first ? edges[1] : second ? edges[2] : edges[0];
+    vec3 b = first ? edges[2] : second ? edges[0] : edges[1];
+    precise vec3 normal = a.yzx * b.zxy - a.zxy * b.yzx;
+    vec3 largest = abs(a.yzx * b.zxy) + abs(a.zxy * b.yzx);
+    precise float side = dot(normal, to_plane);
+    return side * sign(dot(normal, direction)) > roundings * dot(largest, abs(to_plane));
 }
 
 /// Distance, and barycentrics of p1 and p2, of a hit in (t_min, t_max).
@@ -82,15 +88,10 @@ bool intersect_watertight(TriangleRay ray, vec3 p0, vec3 p1, vec3 p2, float t_mi
     float least = min(edges.x, min(edges.y, edges.z));
     float most = max(edges.x, max(edges.y, edges.z));
     float inverse = 1.0 / (edges.x + edges.y + edges.z);
-    vec3 depths = vec3(a.z, b.z, c.z);
-    t = dot(edges, depths) * ray.shear.z * inverse;
+    t = dot(edges, vec3(a.z, b.z, c.z)) * ray.shear.z * inverse;
     barycentrics = edges.yz * inverse;
     // Edge-on, all edges are zero and t is no number: the comparisons fail.
-    if (!((least >= 0.0 || most <= 0.0) && t > t_min && t < t_max)) {
-        return false;
-    }
-    float error = depth_error(vec3(a2.x, b2.x, c2.x), vec3(a2.y, b2.y, c2.y), depths, edges, inverse);
-    return t > t_min + error * abs(ray.shear.z);
+    return (least >= 0.0 || most <= 0.0) && t > t_min && t < t_max;
 }
 
 /// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. Same contract; rays may pass between triangles.

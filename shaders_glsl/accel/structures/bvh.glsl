@@ -93,7 +93,8 @@ LocalRay mesh_ray(Ray ray, vec4 world_to_object[3]) {
 
 bool intersect_triangle(LocalRay ray, vec3 p0, vec3 p1, vec3 p2, float t_min, float t_max, out float t, out vec2 barycentrics) {
     if (INTERSECTION == 0) {
-        return intersect_watertight(ray.triangle, p0, p1, p2, t_min, t_max, t, barycentrics);
+        return intersect_watertight(ray.triangle, p0, p1, p2, t_min, t_max, t, barycentrics)
+            && lies_ahead(ray.origin, ray.direction, p0, p1, p2);
     }
     return intersect_moeller_trumbore(ray.origin, ray.direction, p0, p1, p2, t_min, t_max, t, barycentrics);
 }
