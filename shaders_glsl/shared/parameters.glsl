@@ -55,7 +55,7 @@ struct Parameters {
     //@ rays.first_shadow_rays 1 1..16 rays
     /// Shadow rays at the primary hit; every later vertex sends one.
     uint first_shadow_rays;
-    //@ lights.candidates 8 1..64 lights
+    //@ lights.candidates 16 1..64 lights
     /// Lights drawn by power for each shadow ray, which goes to one of them in proportion to what it would bring unshadowed; at most one for
     /// every four lights of the scene. More: less noise where many lights are near some surfaces and far from others; each costs a BSDF.
     uint light_candidates;
