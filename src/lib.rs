@@ -9,6 +9,7 @@ pub mod frame;
 pub mod scene;
 pub mod accel;
 pub mod paths;
+pub mod filter;
 pub mod display;
 pub mod technique;
 pub mod metrics;

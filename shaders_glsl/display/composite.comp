@@ -4,6 +4,9 @@
 
 layout(local_size_x = 8, local_size_y = 4) in;
 
+/// A filter has summed up the diffuse terms, and diffuse_direct is its result.
+layout(constant_id = 202) const bool FILTERED = false;
+
 layout(set = 1, binding = 0, COLOR_FORMAT) readonly uniform image2D before;
 layout(set = 1, binding = 1, COLOR_FORMAT) readonly uniform image2D attenuation;
 layout(set = 1, binding = 2, COLOR_FORMAT) readonly uniform image2D diffuse_direct;
@@ -17,7 +20,10 @@ void main() {
     if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
         return;
     }
-    vec3 diffuse = imageLoad(diffuse_direct, pixel).rgb + imageLoad(diffuse_indirect, pixel).rgb;
+    vec3 diffuse = imageLoad(diffuse_direct, pixel).rgb;
+    if (!FILTERED) {
+        diffuse += imageLoad(diffuse_indirect, pixel).rgb;
+    }
     vec3 specular = imageLoad(specular_direct, pixel).rgb + imageLoad(specular_indirect, pixel).rgb;
     vec3 sum = imageLoad(before, pixel).rgb + imageLoad(attenuation, pixel).rgb * diffuse + specular;
     imageStore(radiance, pixel, storable(vec4(sum, 1.0)));

@@ -12,6 +12,17 @@ layout(set = 1, binding = 3, COLOR_FORMAT) writeonly uniform image2D diffuse_ind
 layout(set = 1, binding = 4, COLOR_FORMAT) writeonly uniform image2D specular_direct;
 layout(set = 1, binding = 5, COLOR_FORMAT) writeonly uniform image2D specular_indirect;
 layout(set = 1, binding = 6, r32ui) writeonly uniform uimage2D ray_count;
+/// Position relative to the frame's origin, metres; w: view-plane distance of the path up to it, 0 where there is no filter vertex.
+layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D filter_position;
+/// Shading normal and the way the path arrives (lib/packing.glsl).
+layout(set = 1, binding = 8, r32ui) writeonly uniform uimage2D filter_normal;
+layout(set = 1, binding = 9, r32ui) writeonly uniform uimage2D filter_incident;
+
+/// How far a camera without mirrors would see the vertex, measured along its view: reflections keep the angle between a ray and the view
+/// direction that they mirror along with it.
+float view_plane_distance(uvec2 pixel, float travelled) {
+    return travelled * dot(primary_ray(pixel, frame.jitter).direction, frame.camera.forward);
+}
 
 /// A sample with a value that is not a number is no sample: it must not enter a history.
 vec4 finite_or_black(vec3 value) {
@@ -32,6 +43,10 @@ void write_pixel(uvec2 at, Terms terms, uint samples, uvec2 counts) {
     imageStore(specular_direct, pixel, finite_or_black(terms.specular_direct));
     imageStore(specular_indirect, pixel, finite_or_black(terms.specular_indirect));
     imageStore(ray_count, pixel, uvec4(pack_counts(counts)));
+    FilterVertex vertex = terms.vertex;
+    imageStore(filter_position, pixel, vec4(vertex.position, view_plane_distance(at, vertex.travelled)));
+    imageStore(filter_normal, pixel, uvec4(vertex.travelled > 0.0 ? pack_normal(vertex.normal) : 0u));
+    imageStore(filter_incident, pixel, uvec4(vertex.travelled > 0.0 ? pack_normal(vertex.incident) : 0u));
 }
 
 void main() {

@@ -53,6 +53,8 @@ struct Path {
     /// Vertices before the ray's origin: 0 for the camera's ray.
     uint vertex;
     uint filter_vertex;
+    /// Length of all rays that have arrived, metres.
+    float travelled;
     Sampler numbers;
 };
 
@@ -84,6 +86,7 @@ Path path_begin(uvec2 pixel, uint sample_index) {
     path.eta_scale = 1.0;
     path.vertex = 0u;
     path.filter_vertex = NO_VERTEX;
+    path.travelled = 0.0;
     return path;
 }
 
@@ -192,6 +195,7 @@ bool scatter(inout Path path, HitPoint point, vec3 wo, vec4 u, vec3 attenuation)
 /// The path arrives at a surface: adds what it emits. False where the path ends there.
 bool arrive(inout Path path, Hit hit, HitPoint point, inout Terms terms) {
     MaterialBuffer materials = MaterialBuffer(frame.materials);
+    path.travelled += hit.t;
     if (EFFECT_TRANSMISSION && !point.on_front && !point.surface.thin) {
         path.throughput *= exp(-materials.at[point.material].absorption * hit.t);
     }
@@ -208,6 +212,7 @@ bool arrive(inout Path path, Hit hit, HitPoint point, inout Terms terms) {
     if (path.filter_vertex == NO_VERTEX && max(albedo.r, max(albedo.g, albedo.b)) > 0.0) {
         path.filter_vertex = path.vertex;
         terms.attenuation = path.throughput * albedo;
+        terms.vertex = FilterVertex(point.origin.position, point.surface.normal_ws, path.ray.direction, path.travelled);
     }
     return path.vertex <= parameters.max_bounces;
 }

@@ -16,6 +16,18 @@
 #include "lib/storage.glsl"
 #include "shared/parameters.glsl"
 
+/// Where the terms are kept apart.
+struct FilterVertex {
+    /// Relative to the frame's origin, metres.
+    vec3 position;
+    /// Shading normal.
+    vec3 normal;
+    /// Unit, the way the path arrives.
+    vec3 incident;
+    /// Length of the path up to it, metres; 0 where there is none.
+    float travelled;
+};
+
 struct Terms {
     vec3 before;
     vec3 attenuation;
@@ -23,6 +35,7 @@ struct Terms {
     vec3 diffuse_indirect;
     vec3 specular_direct;
     vec3 specular_indirect;
+    FilterVertex vertex;
 };
 
 /// Where a contribution belongs.
@@ -31,7 +44,8 @@ const uint TERM_DIRECT = 1u;
 const uint TERM_INDIRECT = 2u;
 
 Terms no_terms() {
-    return Terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    FilterVertex none = FilterVertex(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+    return Terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), none);
 }
 
 /// Radiance that arrives through the filter vertex's lobes with these weights; in front of it the weights are 0 and 1.

@@ -44,6 +44,27 @@ layout(constant_id = 121) const uint SUM = 0;
 //@ frame.precision fp32 fp32|fp16
 /// Images and histories, other than positions, motion and identities. fp16 halves their bytes; rounds to 11 bits, and clamps at 65504.
 layout(constant_id = 122) const uint PRECISION = 0;
+//@ hpsf.sums fixed fixed|float
+/// Sums of cells: fixed point of 64 bits, the same picture in every run, or float atomics, where the device offers them; fewer bytes.
+layout(constant_id = 130) const uint HPSF_SUMS = 0;
+//@ hpsf.table persistent persistent|swapped
+/// One table that keeps cells until they are evicted, or two that change places with every frame: only cells touched in the last frame are known.
+layout(constant_id = 131) const uint HPSF_TABLE = 0;
+//@ hpsf.time integrate frame|average|integrate
+/// What a cell knows: this frame's samples, an exponential moving average, or the mean over up to hpsf.samples samples.
+layout(constant_id = 132) const uint HPSF_TIME = 2;
+//@ hpsf.normals key key|fingerprint
+/// Quantised normals are part of both hashes, or of the fingerprint alone, so that all normals of one place are near each other in the table.
+layout(constant_id = 133) const uint HPSF_NORMALS = 0;
+//@ hpsf.jitter_by hash hash|sampler
+/// Numbers that jitter positions and normals: independent, or of the path's sample sequence.
+layout(constant_id = 134) const uint HPSF_JITTER_BY = 0;
+//@ hpsf.neighbours off off|on
+/// Cells with fewer samples than hpsf.few take in the eight cells around them. Less noise at rims, a little blur; lookups where it happens.
+layout(constant_id = 135) const uint HPSF_NEIGHBOURS = 0;
+//@ hpsf.seed on off|on
+/// New cells begin with what cells of the neighbouring levels know, when the camera has moved. Off: they begin with nothing.
+layout(constant_id = 136) const uint HPSF_SEED = 1;
 
 struct Parameters {
     //@ paths.max_bounces 8 0..64 bounces
@@ -65,6 +86,57 @@ struct Parameters {
     //@ textures.lod_bias 0 -8..8 levels
     /// Added to the ray-cone level of detail of every texture. Negative is sharper and noisier.
     float lod_bias;
+    //@ sspsf.window 9 1..31 pixels
+    /// Edge of the square window that sspsf averages over. Wider: less noise, blurrier shadows; cost grows with its square.
+    uint sspsf_window;
+    //@ sspsf.reach 1 0.1..16
+    /// How far apart in the world sspsf takes two vertices for similar, in half windows as large as they appear at the vertex.
+    float sspsf_reach;
+    //@ sspsf.angle 30 1..180 degrees
+    /// Largest angle between the normals of vertices that sspsf takes for similar. Smaller keeps the shading of curved surfaces, and more noise.
+    float sspsf_angle;
+    //@ hpsf.width 16 1..256 pixels
+    /// Width of a cell as it appears on the screen; rounded down to a power of two in the world. Wider: less noise, blurrier shadows.
+    float hpsf_width;
+    //@ hpsf.jitter 0.6 0..4 cells
+    /// Positions are moved by up to so much in the tangent plane. 0: none, cells show their borders; more: blur and noise instead.
+    float hpsf_jitter;
+    //@ hpsf.normal_bits 2 0..8 bits
+    /// Cells are told apart by normals quantised to so many bits. More keep the shading of curved surfaces, and more noise.
+    uint hpsf_normal_bits;
+    //@ hpsf.normal_jitter 0 0..2 cells
+    /// Normals are tilted by up to so much of their quantisation.
+    float hpsf_normal_jitter;
+    //@ hpsf.lookups 1 0..8 cells
+    /// Cells that a pixel's radiance is the mean of, each found by a jitter of its own; 0: the cell that the pixel's sample went to. More remove the jitter's noise, at one lookup each.
+    uint hpsf_lookups;
+    //@ hpsf.levels 2 1..4 levels
+    /// Resolutions that samples are added to, each twice as coarse as the one before; cells with few samples are looked up coarser. One insertion each.
+    uint hpsf_levels;
+    //@ hpsf.few 8 0..100000 samples
+    /// Fewer samples than this make a cell look for help: at the coarser level, or at its neighbours.
+    uint hpsf_few;
+    //@ hpsf.probes 8 1..64 slots
+    /// Slots that may hold a key. More fail more rarely in a full table; reads of neighbouring words.
+    uint hpsf_probes;
+    //@ hpsf.cells 1 0.001..8 cells per pixel
+    /// Size of the table, 52 bytes a cell (36 with float sums; 72 and 56 swapped). Where it is too small, pixels go unfiltered.
+    float hpsf_cells;
+    //@ hpsf.alpha 0.9 0..1
+    /// Weight of the past where hpsf.time is average. More: less noise, more lag.
+    float hpsf_alpha;
+    //@ hpsf.samples 65536 1..16777215 samples
+    /// Samples of the past that count at most where hpsf.time is integrate. Fewer follow changes sooner, and leave more noise.
+    uint hpsf_samples;
+    //@ hpsf.age 8 0..254 frames
+    /// A persistent table evicts cells that no sample has touched for longer. 0: unless touched in every frame.
+    uint hpsf_age;
+    //@ hpsf.seed_weight 0.25 0..1
+    /// How much a coarser cell's samples count when a finer one begins. More: less noise when coming nearer; coarse cells show longer.
+    float hpsf_seed_weight;
+    //@ hpsf.largest 65536 1..1000000000 W/(sr*m^2)
+    /// Largest radiance of a sample that enters a cell; it takes a share of 2^-40 as the unit of fixed point.
+    float hpsf_largest;
 };
 
 #endif

@@ -136,13 +136,15 @@ impl<'b, 'a> PassBuilder<'b, 'a> {
     }
 
     /// # Errors
-    /// The declaration differs from the shader's: a variable without a resource, a resource without a variable, other access.
+    /// The declaration differs from the shader's: a variable without a resource, a resource without a variable, other access. A
+    /// specialization constant has two values.
     pub fn add(self) -> Result<(), GpuError> {
         let frame = self.frame;
+        let wrong = |message| GpuError::Interface { shader: self.shader.to_owned(), message };
+        check_constants(&self.constants).map_err(wrong)?;
         let spirv = load_shader(self.shader, frame.structure, frame.precision)?;
         let pipeline = ComputePipeline::new(frame.gpu, self.name, &spirv, &frame.globals, &self.constants)?;
         let bindings: Vec<&Binding> = pipeline.reflection().bindings.iter().filter(|b| b.set == 1).collect();
-        let wrong = |message| GpuError::Interface { shader: self.shader.to_owned(), message };
         check(&bindings, &self.uses).and_then(|()| check_formats(&bindings, &self.uses, &frame.resources)).map_err(wrong)?;
         let alternates = self.uses.iter().any(|one| frame.resources.alternates(one.resource));
         let set = |parity| descriptor_set(&pipeline, &bindings, &self.uses, &frame.resources, parity);
@@ -217,6 +219,15 @@ fn check_formats(bindings: &[&Binding], uses: &[Use], resources: &Resources) -> 
     Ok(())
 }
 
+/// Where two constants share an id, which of them a kernel sees would be chance.
+fn check_constants(constants: &[(u32, u32)]) -> Result<(), String> {
+    let mut ids = std::collections::HashSet::new();
+    match constants.iter().find(|(id, _)| !ids.insert(*id)) {
+        Some((id, _)) => Err(format!("two specialization constants have the id {id}")),
+        None => Ok(()),
+    }
+}
+
 /// What a frame's passes have touched since the last barrier.
 #[derive(Default)]
 pub(super) struct Hazards {
@@ -263,6 +274,12 @@ mod tests {
         assert!(!hazards.needs_barrier(&[touch(a, Access::Read), touch(b, Access::Read)]), "reads after the barrier");
         assert!(hazards.needs_barrier(&[touch(b, Access::Update)]), "write after read");
         assert!(hazards.needs_barrier(&[touch(b, Access::Write)]), "write after write");
+    }
+
+    #[test]
+    fn an_id_stands_for_one_constant() {
+        assert!(check_constants(&[(1, 0), (2, 0)]).is_ok());
+        assert!(check_constants(&[(1, 0), (2, 0), (1, 0)]).unwrap_err().contains("id 1"));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! (megakernel_terms.comp; Meijer, section 4.1, algorithm 1).
 //!
 //! Takes the scene. Also returns `ray_count`: scattered rays in the low, shadow rays in the high 16 bits. No history. Writes 20 bytes per
-//! pixel, or 100 with terms (12 and 52 at fp16); traces up to 2 (bounces + 1) + 1 rays per sample.
+//! pixel, or 124 with terms (12 and 76 at fp16), 24 of them for the filter vertex; traces up to 2 (bounces + 1) + 1 rays per sample.
 
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::{DeviceKind, GpuError, vk};
@@ -42,6 +42,17 @@ pub struct Terms {
     pub diffuse_indirect: ImageHandle,
     pub specular_direct: ImageHandle,
     pub specular_indirect: ImageHandle,
+    pub vertex: FilterVertex,
+}
+
+/// Where the terms are kept apart: the first vertex with a diffuse lobe.
+#[derive(Debug, Clone, Copy)]
+pub struct FilterVertex {
+    /// Relative to the frame's origin, metres; w: view-plane distance of the path up to it, 0 where there is no such vertex.
+    pub position: ImageHandle,
+    /// Octahedral, 32 bits: shading normal, and the way the path arrives.
+    pub normal: ImageHandle,
+    pub incident: ImageHandle,
 }
 
 impl Terms {
@@ -67,11 +78,17 @@ pub fn add_with_terms(frame: &mut FrameBuilder) -> Result<Terms, GpuError> {
         diffuse_indirect: frame.color_image("diffuse_indirect")?,
         specular_direct: frame.color_image("specular_direct")?,
         specular_indirect: frame.color_image("specular_indirect")?,
+        vertex: FilterVertex {
+            position: frame.image("filter_position", vk::Format::R32G32B32A32_SFLOAT)?,
+            normal: frame.image("filter_normal", vk::Format::R32_UINT)?,
+            incident: frame.image("filter_incident", vk::Format::R32_UINT)?,
+        },
     };
     let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
     let (per_group, groups) = (tiles_per_group(frame), tiles(frame).div_ceil(tiles_per_group(frame)));
     let pass = frame.pass("megakernel", "paths/megakernel_terms").constant(TILES, per_group).groups(groups);
-    let pass = pass.writes("ray_count", ray_count);
+    let pass = pass.writes("ray_count", ray_count).writes("filter_position", terms.vertex.position);
+    let pass = pass.writes("filter_normal", terms.vertex.normal).writes("filter_incident", terms.vertex.incident);
     terms.named().into_iter().fold(pass, |pass, (name, image)| pass.writes(name, image)).add()?;
     Ok(terms)
 }

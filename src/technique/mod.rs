@@ -5,8 +5,10 @@ pub mod parameters;
 mod governor;
 mod prepared;
 mod reference;
+mod hpsf;
 mod renderer;
 mod settings;
+mod sspsf;
 mod timings;
 mod unfiltered;
 
@@ -47,12 +49,14 @@ impl Technique {
 
 /// What a technique's passes depend on.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PassOptions {
+pub(crate) struct PassOptions<'a> {
     /// An output of the g-buffer was asked for, also where the technique itself does not need it.
     pub gbuffer: bool,
+    /// Those that the host needs itself: sizes, and which passes there are.
+    pub parameters: &'a Parameters,
 }
 
-pub static REGISTRY: [Technique; 2] = [reference::TECHNIQUE, unfiltered::TECHNIQUE];
+pub static REGISTRY: [Technique; 4] = [reference::TECHNIQUE, unfiltered::TECHNIQUE, sspsf::TECHNIQUE, hpsf::TECHNIQUE];
 
 /// The technique of this name.
 pub fn find(name: &str) -> Option<&'static Technique> {

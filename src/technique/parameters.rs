@@ -108,6 +108,14 @@ impl Parameters {
         onto
     }
 
+    /// A number, or a choice's index.
+    ///
+    /// # Panics
+    /// Where there is no such parameter.
+    pub fn number(&self, key: &str) -> f64 {
+        self.0[TABLE.iter().position(|parameter| parameter.key == key).expect("the program asks for parameters of the table")]
+    }
+
     /// The value as a user would write it.
     pub fn value(&self, parameter: &Parameter) -> String {
         let index = TABLE.iter().position(|p| p.key == parameter.key).expect("parameters come from the table");
@@ -149,7 +157,8 @@ impl Range {
     fn parse(self, text: &str) -> Option<f64> {
         match self {
             Range::Integer { min, max } => text.parse().ok().filter(|value| (min..=max).contains(value)).map(f64::from),
-            Range::Real { min, max } => text.parse().ok().filter(|value: &f32| (min..=max).contains(value)).map(f64::from),
+            // Compared as shaders see it, kept as it was written.
+            Range::Real { min, max } => text.parse().ok().filter(|&value: &f64| (min..=max).contains(&(value as f32))),
             Range::Choice(choices) => choices.iter().position(|choice| *choice == text).map(|index| index as f64),
         }
     }
@@ -199,6 +208,8 @@ mod tests {
         assert_eq!(parameters.fields().max_bounces, 8);
         parameters.set("textures.lod_bias", "-1.5").unwrap();
         assert_eq!(parameters.fields().lod_bias, -1.5);
+        parameters.set("hpsf.cells", "0.001").unwrap();
+        assert_eq!((parameters.number("hpsf.cells"), parameters.fields().hpsf_cells), (0.001, 0.001));
         parameters.set("paths.direct", "bsdf").unwrap();
         assert!(parameters.constants().contains(&(103, 2)));
     }

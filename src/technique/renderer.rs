@@ -55,7 +55,7 @@ impl Renderer {
         let constants = [prepared.effects.specialization(), settings.parameters.constants(), prepared.structure.constants()].concat();
         let mut frame = FrameBuilder::new(gpu, &globals, prepared.entry.stem, settings.parameters.precision(), constants, settings.extent);
         let gbuffer = settings.outputs.iter().any(|name| gbuffer::OUTPUTS.contains(&name.as_str()));
-        let picture = (technique.passes)(&mut frame, PassOptions { gbuffer })?;
+        let picture = (technique.passes)(&mut frame, PassOptions { gbuffer, parameters: &settings.parameters })?;
         let graph = frame.build();
         check_outputs(&settings, &graph)?;
         prepared.build_ms.pipelines = clock.lap();

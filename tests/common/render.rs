@@ -66,3 +66,21 @@ pub fn mean(image: &Image) -> f64 {
     let values = image.pixels.iter().flatten().map(|&v| f64::from(v));
     values.sum::<f64>() / (3 * image.pixels.len()) as f64
 }
+
+/// Filters: techniques that make a picture of one frame's samples by more than adding their terms up.
+pub fn filters() -> impl Iterator<Item = &'static str> {
+    technique::REGISTRY.iter().filter(|technique| !technique.accumulates && technique.name != "unfiltered").map(|technique| technique.name)
+}
+
+/// A technique after some frames.
+pub fn render_frames(gpu: &Gpu, scene: &Scene, settings: &Settings, technique: &str, frames: u32) -> Renderer {
+    let settings = Settings { technique: technique::find(technique).expect("it is registered"), ..settings.clone() };
+    let mut renderer = Renderer::new(gpu, scene.clone(), settings).unwrap();
+    (0..frames).for_each(|_| renderer.render_frame().unwrap());
+    renderer.finish().unwrap();
+    renderer
+}
+
+pub fn output(renderer: &Renderer, name: &str) -> Image {
+    renderer.output(name).unwrap().expect("the technique has it")
+}

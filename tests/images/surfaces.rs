@@ -1,8 +1,8 @@
 //! What a surface shows by itself, exactly: unlit colour, emission of its sides, the colour of what lies below it.
 
 use crate::common;
+use crate::common::floor::{floor, node};
 use crate::common::render::{render, settings};
-use crate::exact::{floor, node};
 use glam::{DMat4, DQuat, DVec3};
 use pathspace::scene::{CameraView, Environment, Instance, Light, LightKind, Local, Node, Scene};
 use pathspace::technique::ViewChoice;

@@ -1,0 +1,68 @@
+// From a filter vertex to the key of its cell: Meijer, algorithm 3; Binder, algorithm 1.
+//
+// The cell is as wide as hpsf.width pixels appear at the vertex, rounded down to a power of two. The position is jittered in the tangent
+// plane by up to hpsf.jitter cells either way, and the level is found again where it has got to, so that all jittered
+// positions at one place agree on their cell. That replaces the cells' visible borders by noise (Binder, section 3.1.4).
+//
+// Deviations and why: two numbers in a basis of the tangent plane, where the thesis jitters in three and takes the normal's part out by
+// |n| * delta, which is no projection. The distance is measured along the view, which mirrors turn along with it; the thesis takes
+// the largest component along the world's axes, which makes levels change when the scene turns.
+#ifndef FILTER_HPSF_CELL_GLSL
+#define FILTER_HPSF_CELL_GLSL
+
+#include "filter/footprint.glsl"
+#include "lib/frame.glsl"
+#include "lib/hash_key.glsl"
+#include "lib/sampler.glsl"
+#include "paths/primary.glsl"
+
+/// Behind all dimensions that a path takes (paths/path.glsl).
+const uint JITTER_DIMENSION = 320u;
+
+struct FilterPoint {
+    vec3 position;
+    vec3 normal;
+    /// The way the path arrives.
+    vec3 incident;
+    /// Along the view, metres.
+    float distance;
+    /// Cosine between the pixel's ray and the view.
+    float view_cosine;
+};
+
+/// Of one pixel, where its vertex is written.
+FilterPoint filter_point(uvec2 pixel, vec4 position, uint normal, uint incident) {
+    float view_cosine = dot(primary_ray(pixel, frame.jitter).direction, frame.camera.forward);
+    return FilterPoint(position.xyz, unpack_normal(normal), unpack_normal(incident), position.w, view_cosine);
+}
+
+/// Numbers in [0, 1)^4 of a pixel's jitter `index` in this frame: for the position, and for the normal.
+vec4 jitter_numbers(uvec2 pixel, uint index) {
+    if (HPSF_JITTER_BY == 0u) {
+        uvec4 bits = pcg4d(uvec4(pixel, frame.seed, frame.first_sample * 16u + index));
+        return vec4(unit_float(bits.xy), unit_float(bits.zw));
+    }
+    Sampler numbers = sampler_begin(pixel, frame.first_sample, frame.seed);
+    numbers.dimension = JITTER_DIMENSION + 2u * index;
+    vec2 first = sample_2d(numbers);
+    return vec4(first, sample_2d(numbers));
+}
+
+int level_at(float distance) {
+    return level_of_width(parameters.hpsf_width * pixel_footprint(max(distance, 0.0)));
+}
+
+/// The key of a vertex, jittered by numbers in [0, 1)^4, `coarser` levels above the one of its distance.
+CellKey key_of(FilterPoint point, vec4 numbers, int coarser) {
+    Basis basis = basis_around(point.normal);
+    int level = level_at(point.distance) + coarser;
+    vec2 shift = (2.0 * numbers.xy - 1.0) * (parameters.hpsf_jitter * power_of_two(level));
+    vec3 offset = shift.x * basis.tangent + shift.y * basis.bitangent;
+    int level_there = level_at(point.distance + dot(offset, point.incident) * point.view_cosine) + coarser;
+    vec2 tilt = (2.0 * numbers.zw - 1.0) * (parameters.hpsf_normal_jitter * exp2(-0.5 * float(parameters.hpsf_normal_bits)));
+    vec3 normal = normalize(point.normal + tilt.x * basis.tangent + tilt.y * basis.bitangent);
+    ivec3 cell = cell_of(point.position + offset, frame.origin_steps, frame.log2_origin_step, level_there);
+    return CellKey(cell, level_there, quantise_normal(normal, parameters.hpsf_normal_bits));
+}
+
+#endif

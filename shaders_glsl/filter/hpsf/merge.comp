@@ -1,0 +1,70 @@
+// Per cell: this frame's sums become a mean, and that joins what earlier frames know (Binder, section 3.4.1).
+//
+// average: exponential moving average with weight hpsf.alpha for the past; adapts, and never converges. integrate: alpha =
+// N_old / (N_old + N_new), the mean over all samples, N_old up to hpsf.samples. frame: this frame alone. The step towards the new mean
+// is what is added, so the count may stop at its limit without stalling the mean. Cells that no sample has touched for more than hpsf.age
+// frames are evicted (section 3.4.3); with swapped tables, or frame, at once (Meijer, section 4.2.2).
+#include "filter/hpsf/fixed_point.glsl"
+#include "filter/hpsf/table.glsl"
+#include "lib/colour.glsl"
+#include "lib/elements.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 223) const bool FLOAT_SUMS = false;
+
+layout(set = 1, binding = 0, scalar) buffer Fingerprints { uint at[]; } fingerprints;
+layout(set = 1, binding = 1, scalar) buffer Sums { uint at[]; } sums;
+layout(set = 1, binding = 2, scalar) readonly buffer Seeds { uvec4 at[]; } seeds;
+layout(set = 1, binding = 3, scalar) buffer Cells { uvec4 at[]; } cells;
+
+/// This frame's samples of a slot; its sums are zero for the next one.
+Cell take_sums(uint slot) {
+    uint stride = FLOAT_SUMS ? 4u : 8u;
+    uint words[7];
+    for (uint i = 0u; i < 7u; i++) {
+        words[i] = i < stride ? sums.at[stride * slot + i] : 0u;
+    }
+    for (uint i = 0u; i < min(stride, 7u); i++) {
+        sums.at[stride * slot + i] = 0u;
+    }
+    if (FLOAT_SUMS) {
+        float count = uintBitsToFloat(words[3]);
+        return Cell(uintBitsToFloat(uvec3(words[0], words[1], words[2])) / max(count, 1.0), uint(count), 0u);
+    }
+    vec3 sum = vec3(from_fixed(words[0], words[1]), from_fixed(words[2], words[3]), from_fixed(words[4], words[5]));
+    return Cell(sum / max(float(words[6]), 1.0), words[6], 0u);
+}
+
+/// Weight of the past.
+float alpha_of(uint old_count, uint new_count) {
+    if (HPSF_TIME == TIME_FRAME || old_count == 0u) {
+        return 0.0;
+    }
+    return HPSF_TIME == TIME_AVERAGE ? parameters.hpsf_alpha : float(old_count) / (float(old_count) + float(new_count));
+}
+
+void main() {
+    uint slot = element_index();
+    if (slot >= CAPACITY || fingerprints.at[slot] == NO_FINGERPRINT) {
+        return;
+    }
+    Cell old = HPSF_TABLE == TABLE_PERSISTENT ? unpack_cell(cells.at[slot]) : EMPTY_CELL;
+    Cell new = take_sums(slot);
+    if (new.count == 0u) {
+        bool evicted = HPSF_TIME == TIME_FRAME || old.age >= parameters.hpsf_age;
+        old.age++;
+        cells.at[slot] = evicted ? uvec4(0u) : pack_cell(old);
+        if (evicted) {
+            fingerprints.at[slot] = NO_FINGERPRINT;
+        }
+        return;
+    }
+    if (old.count == 0u) {
+        old = unpack_cell(seeds.at[slot]);
+    }
+    uint known = min(old.count, parameters.hpsf_samples);
+    vec3 mean = old.mean + (1.0 - alpha_of(known, new.count)) * (new.mean - old.mean);
+    uint count = min((HPSF_TIME == TIME_FRAME ? 0u : known) + new.count, MOST_SAMPLES);
+    cells.at[slot] = pack_cell(Cell(all_finite(mean) ? mean : new.mean, count, 0u));
+}

@@ -1,0 +1,98 @@
+// Looks up each pixel's filtered radiance: Binder, algorithm 1; Meijer, algorithm 5.
+//
+// The pixel reads the cell that its own sample went to, or the mean of hpsf.lookups cells, found by as many further jitters: more of them
+// leave less of the jitter's noise. A cell of fewer samples than hpsf.few is helped out by its neighbours in the tangent plane (Binder,
+// 3.3.1), or by the next coarser level that has enough (3.3.2). Where the sample's insertion failed, the pixel shows its own
+// radiance unfiltered, and `hpsf_samples` is 0.
+#include "filter/hpsf/cell.glsl"
+#include "filter/hpsf/table.glsl"
+#include "lib/storage.glsl"
+
+layout(local_size_x = 8, local_size_y = 4) in;
+
+layout(set = 1, binding = 0, COLOR_FORMAT) readonly uniform image2D diffuse_direct;
+layout(set = 1, binding = 1, COLOR_FORMAT) readonly uniform image2D diffuse_indirect;
+layout(set = 1, binding = 2, rgba32f) readonly uniform image2D filter_position;
+layout(set = 1, binding = 3, r32ui) readonly uniform uimage2D filter_normal;
+layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D filter_incident;
+layout(set = 1, binding = 5, scalar) readonly buffer Fingerprints { uint at[]; } fingerprints;
+layout(set = 1, binding = 6, scalar) readonly buffer Cells { uvec4 at[]; } cells;
+layout(set = 1, binding = 7, COLOR_FORMAT) writeonly uniform image2D diffuse;
+/// Samples that the pixel's radiance is the mean of; 0 where it is its own alone, or there is no filter vertex.
+layout(set = 1, binding = 8, r32ui) writeonly uniform uimage2D hpsf_samples;
+
+Cell cell_of_key(CellKey key) {
+    uint fingerprint = hash_fingerprint(key);
+    uint home = home_slot(key);
+    for (uint i = 0u; i < parameters.hpsf_probes; i++) {
+        uint slot = probe(home, i);
+        if (fingerprints.at[slot] == fingerprint) {
+            return unpack_cell(cells.at[slot]);
+        }
+    }
+    return EMPTY_CELL;
+}
+
+/// With the eight cells around it in the tangent plane.
+Cell with_neighbours(Cell cell, FilterPoint point, vec4 numbers, int coarser) {
+    Basis basis = basis_around(point.normal);
+    float size = power_of_two(level_at(point.distance) + coarser);
+    vec3 centre = point.position;
+    for (uint i = 0u; i < 9u; i++) {
+        if (i != 4u) {
+            vec2 step = (vec2(i % 3u, i / 3u) - 1.0) * size;
+            point.position = centre + step.x * basis.tangent + step.y * basis.bitangent;
+            cell = add_cells(cell, cell_of_key(key_of(point, numbers, coarser)));
+        }
+    }
+    return cell;
+}
+
+/// What is known at one jittered place: of the finest level that has enough samples, or else of the coarsest one.
+Cell look_up(FilterPoint point, vec4 numbers) {
+    Cell best = EMPTY_CELL;
+    for (uint level = 0u; level < parameters.hpsf_levels && best.count < max(parameters.hpsf_few, 1u); level++) {
+        Cell cell = cell_of_key(key_of(point, numbers, int(level)));
+        if (HPSF_NEIGHBOURS == 1u && cell.count < parameters.hpsf_few) {
+            cell = with_neighbours(cell, point, numbers, int(level));
+        }
+        if (cell.count > best.count) {
+            best = cell;
+        }
+    }
+    return best;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
+        return;
+    }
+    vec4 position = imageLoad(filter_position, pixel);
+    if (!(position.w > 0.0)) {
+        imageStore(diffuse, pixel, vec4(0.0));
+        imageStore(hpsf_samples, pixel, uvec4(0u));
+        return;
+    }
+    FilterPoint point = filter_point(uvec2(pixel), position, imageLoad(filter_normal, pixel).x, imageLoad(filter_incident, pixel).x);
+    vec3 sum = vec3(0.0);
+    uint found = 0u;
+    uint samples = 0u;
+    for (uint i = 1u; i <= parameters.hpsf_lookups; i++) {
+        Cell cell = look_up(point, jitter_numbers(uvec2(pixel), i));
+        if (cell.count > 0u) {
+            sum += cell.mean;
+            samples += cell.count;
+            found++;
+        }
+    }
+    if (found == 0u) {
+        Cell own = look_up(point, jitter_numbers(uvec2(pixel), 0u));
+        bool known = own.count > 0u;
+        sum = known ? own.mean : imageLoad(diffuse_direct, pixel).rgb + imageLoad(diffuse_indirect, pixel).rgb;
+        samples = own.count;
+        found = 1u;
+    }
+    imageStore(diffuse, pixel, storable(vec4(sum / float(found), 1.0)));
+    imageStore(hpsf_samples, pixel, uvec4(samples));
+}

@@ -1,0 +1,56 @@
+// The hash table: Binder, section 3.2. A key's place is looked for in hpsf.probes slots from the one that its first hash names; its second
+// hash is its fingerprint there. Keys are never moved, and eviction leaves holes, so that all these slots are searched before a key
+// is taken to be absent.
+#ifndef FILTER_HPSF_TABLE_GLSL
+#define FILTER_HPSF_TABLE_GLSL
+
+#include "lib/hash_key.glsl"
+#include "shared/parameters.glsl"
+
+layout(constant_id = 221) const uint CAPACITY = 1;
+
+const uint TIME_FRAME = 0u;
+const uint TIME_AVERAGE = 1u;
+const uint TIME_INTEGRATE = 2u;
+const uint TABLE_PERSISTENT = 0u;
+const uint TABLE_SWAPPED = 1u;
+
+const uint NO_SLOT = ~0u;
+const uint MOST_SAMPLES = 0xffffffu;
+
+/// What a cell knows: 16 bytes.
+struct Cell {
+    vec3 mean;
+    /// Samples that the mean is over, 0..MOST_SAMPLES.
+    uint count;
+    /// Frames since the last one.
+    uint age;
+};
+
+const Cell EMPTY_CELL = Cell(vec3(0.0), 0u, 0u);
+
+Cell unpack_cell(uvec4 words) {
+    return Cell(uintBitsToFloat(words.xyz), words.w & MOST_SAMPLES, words.w >> 24);
+}
+
+uvec4 pack_cell(Cell cell) {
+    return uvec4(floatBitsToUint(cell.mean), cell.count | cell.age << 24);
+}
+
+/// The slot that the search for a key begins at.
+uint home_slot(CellKey key) {
+    return hash_slot(hash_index(key, HPSF_NORMALS == 0u), CAPACITY);
+}
+
+uint probe(uint home, uint distance) {
+    uint slot = home + distance;
+    return slot < CAPACITY ? slot : slot - CAPACITY;
+}
+
+/// The mean of both, each sample counting as much.
+Cell add_cells(Cell a, Cell b) {
+    float both = max(float(a.count) + float(b.count), 1.0);
+    return Cell(mix(a.mean, b.mean, float(b.count) / both), min(a.count + b.count, MOST_SAMPLES), 0u);
+}
+
+#endif

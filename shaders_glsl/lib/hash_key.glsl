@@ -1,0 +1,113 @@
+// Keys of path vertices, and two hashes of them: Binder, section 3.1.2 and algorithm 1; Meijer, algorithms 2 and 3.
+//
+// A key is the cell of a grid of a power of two metres that a position lies in, that power, and a quantised normal. Cells are numbered from the
+// world's zero, not from the frame's origin: coordinates are integers modulo 2^32, the origin's part of them is exact, and so
+// they stay when the origin moves, wherever the scene is.
+//
+// Deviations and why: floor instead of Meijer's conversion to int, which would make the cells around zero twice as wide. The exponent is
+// taken from the bits, as Meijer does, but is part of both hashes: equal coordinates of two levels are different cells. Normals are
+// turned by a fixed rotation before they are quantised, because the axes, the commonest normals of all, would lie on borders
+// of the octahedral grid.
+#ifndef LIB_HASH_KEY_GLSL
+#define LIB_HASH_KEY_GLSL
+
+#include "lib/packing.glsl"
+#include "lib/rng.glsl"
+
+struct CellKey {
+    ivec3 cell;
+    /// Cells are 2^level metres wide.
+    int level;
+    uint normal;
+};
+
+/// 2^exponent, for -126..127.
+float power_of_two(int exponent) {
+    return uintBitsToFloat(uint(exponent + 127) << 23);
+}
+
+/// Level of the largest cell that is not wider than `width` metres.
+int level_of_width(float width) {
+    return clamp(int((floatBitsToUint(width) >> 23) & 0xffu) - 127, -100, 100);
+}
+
+/// floor((local + steps 2^log2_step) / 2^level) modulo 2^32. Exact for cells up to the step; larger ones round like the sum.
+int cell_coordinate(float local, int steps, int log2_step, int level) {
+    // Beyond 2^30 cells positions have long lost the digits that would tell cells apart.
+    float scaled = clamp(local * power_of_two(-level), -1073741824.0, 1073741824.0);
+    int finer = log2_step - level;
+    if (finer >= 0) {
+        return int(floor(scaled)) + (finer < 32 ? steps << finer : 0);
+    }
+    int coarser = min(-finer, 30);
+    int whole = steps >> coarser;
+    int rest = steps - (whole << coarser);
+    return whole + int(floor(scaled + float(rest) * power_of_two(-coarser)));
+}
+
+ivec3 cell_of(vec3 local, ivec3 steps, int log2_step, int level) {
+    return ivec3(
+        cell_coordinate(local.x, steps.x, log2_step, level),
+        cell_coordinate(local.y, steps.y, log2_step, level),
+        cell_coordinate(local.z, steps.z, log2_step, level));
+}
+
+/// One of 2^bits cells of directions, bits 0..8.
+uint quantise_normal(vec3 n, uint bits) {
+    const mat3 turned = mat3(0.7476, 0.4915, -0.4466, -0.2794, 0.8448, 0.4563, 0.6016, -0.2163, 0.7690);
+    uvec2 split = uvec2((bits + 1u) / 2u, bits / 2u);
+    vec2 cells = vec2(uvec2(1u) << split);
+    vec2 p = octahedral_encode(turned * n) * 0.5 + 0.5;
+    uvec2 q = uvec2(clamp(p * cells, vec2(0.0), cells - 1.0));
+    return q.x | q.y << split.x;
+}
+
+/// The cell of the next coarser level that this one is part of.
+CellKey parent_of(CellKey key) {
+    return CellKey(key.cell >> 1, key.level + 1, key.normal);
+}
+
+/// One of the eight cells of the next finer level.
+CellKey child_of(CellKey key, uint i) {
+    return CellKey(key.cell * 2 + ivec3(i & 1u, (i >> 1) & 1u, i >> 2), key.level - 1, key.normal);
+}
+
+/// Where to look for the key: nested PCG, as Meijer's algorithm 2.
+uint hash_index(CellKey key, bool with_normal) {
+    uint hash = pcg_hash(uint(key.level) + (with_normal ? key.normal << 16 : 0u));
+    hash = pcg_hash(hash + uint(key.cell.z));
+    hash = pcg_hash(hash + uint(key.cell.x));
+    return pcg_hash(hash + uint(key.cell.y));
+}
+
+uint murmur_mix(uint hash, uint word) {
+    word *= 0xcc9e2d51u;
+    word = (word << 15 | word >> 17) * 0x1b873593u;
+    hash ^= word;
+    return (hash << 13 | hash >> 19) * 5u + 0xe6546b64u;
+}
+
+/// What marks an empty cell, and is no key's fingerprint.
+const uint NO_FINGERPRINT = 0u;
+
+/// What tells keys at one place apart: Appleby's MurmurHash3 (x86, 32 bits) of the key's words.
+uint hash_fingerprint(CellKey key) {
+    uint hash = murmur_mix(0x9747b28cu, uint(key.cell.x));
+    hash = murmur_mix(hash, uint(key.cell.y));
+    hash = murmur_mix(hash, uint(key.cell.z));
+    hash = murmur_mix(hash, uint(key.level & 0xffff) | key.normal << 16);
+    hash ^= 16u;
+    hash = (hash ^ hash >> 16) * 0x85ebca6bu;
+    hash = (hash ^ hash >> 13) * 0xc2b2ae35u;
+    return max(hash ^ hash >> 16, 1u);
+}
+
+/// A hash scaled to 0..capacity - 1.
+uint hash_slot(uint hash, uint capacity) {
+    uint slot;
+    uint fraction;
+    umulExtended(hash, capacity, slot, fraction);
+    return slot;
+}
+
+#endif

@@ -1,0 +1,139 @@
+//! Hashed path space filtering: shaders_glsl/filter/hpsf/, Binder, chapter 3; Meijer, section 4.2.
+//!
+//! Takes the diffuse terms and their filter vertices; returns `diffuse`, the mean over a cell of the world, and puts out `hpsf_samples`, the
+//! samples that it is over (0: unfiltered). History: the table, persistent or swapped with every frame.
+//!
+//! Three passes. collect: each pixel's sample into a cell, 56 bytes read per pixel, and per level 4 bytes of fingerprint read and 28
+//! (float: 16) of sums updated. merge: over slots, 4 bytes read each, and for those taken 32 (16) of sums, 16 of seed and 16 of
+//! mean. resolve: 56 bytes read and 20 written per pixel, 20 read per lookup and level.
+
+use crate::frame::{BufferHandle, FrameBuilder, History, ImageHandle, PassBuilder};
+use crate::gpu::{GpuError, vk};
+use crate::paths::megakernel::Terms;
+
+/// Specialization constants.
+const CAPACITY: u32 = 221;
+const SAMPLE_BITS: u32 = 222;
+const FLOAT_SUMS: u32 = 223;
+
+/// Bytes per slot.
+const FINGERPRINT: u64 = 4;
+const CELL: u64 = 16;
+
+/// What the table depends on.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    pub cells_per_pixel: f64,
+    /// Cells that a sample is added to.
+    pub levels: u32,
+    /// Two tables that change places with every frame.
+    pub swapped: bool,
+    /// Float atomics, where the device has them.
+    pub float_sums: bool,
+}
+
+struct Table {
+    capacity: u32,
+    fingerprints: History<BufferHandle>,
+    cells: History<BufferHandle>,
+    seeds: BufferHandle,
+    sums: BufferHandle,
+    float_sums: bool,
+    /// Of a frame's samples: at most one per pixel and level.
+    insertions: u64,
+}
+
+pub fn add(frame: &mut FrameBuilder, terms: &Terms, options: Options) -> Result<ImageHandle, GpuError> {
+    let table = Table::new(frame, options)?;
+    if options.swapped {
+        frame.fill("hpsf clear", table.fingerprints.current, 0);
+    }
+    table.collect(frame, terms)?;
+    table.merge(frame)?;
+    table.resolve(frame, terms)
+}
+
+impl Table {
+    fn new(frame: &mut FrameBuilder, options: Options) -> Result<Self, GpuError> {
+        let float_sums = options.float_sums && frame.gpu().capabilities().float_atomics;
+        if options.float_sums && !float_sums {
+            tracing::warn!("the device has no float atomics: hpsf sums in fixed point");
+        }
+        let sums = if float_sums { 16 } else { 32 };
+        let most = frame.gpu().capabilities().max_storage_buffer_range / sums;
+        let wanted = (f64::from(frame.pixels()) * options.cells_per_pixel).ceil() as u64;
+        let capacity = wanted.clamp(64, most.min(u32::MAX.into()));
+        Ok(Self {
+            capacity: capacity as u32,
+            fingerprints: kept(frame, "hpsf fingerprints", capacity * FINGERPRINT, options.swapped)?,
+            cells: kept(frame, "hpsf cells", capacity * CELL, options.swapped)?,
+            seeds: frame.buffer("hpsf seeds", capacity * CELL)?,
+            sums: frame.kept_buffer("hpsf sums", capacity * sums)?,
+            float_sums,
+            insertions: u64::from(frame.pixels()) * u64::from(options.levels),
+        })
+    }
+
+    fn collect(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {
+        let (stem, sum) = if self.float_sums { ("filter/hpsf/collect_float", 16) } else { ("filter/hpsf/collect_fixed", 28) };
+        let touched = self.insertions;
+        let pass = reads_vertices(frame.pass("hpsf collect", stem), terms).constant(CAPACITY, self.capacity);
+        let pass = pass.constant(SAMPLE_BITS, sample_bits(self.insertions));
+        let pass = pass.updates("fingerprints", self.fingerprints.current).touching(touched * FINGERPRINT);
+        let pass = pass.updates("sums", self.sums).touching(touched * sum).writes("seeds", self.seeds);
+        pass.reads("known_cells", self.cells.previous).reads("known_fingerprints", self.fingerprints.previous).add()
+    }
+
+    fn merge(&self, frame: &mut FrameBuilder) -> Result<(), GpuError> {
+        let pass = frame.pass("hpsf merge", "filter/hpsf/merge").elements(self.capacity).constant(CAPACITY, self.capacity);
+        let pass = pass.constant(SAMPLE_BITS, sample_bits(self.insertions)).constant(FLOAT_SUMS, self.float_sums.into());
+        let pass = pass.updates("fingerprints", self.fingerprints.current).updates("sums", self.sums);
+        pass.reads("seeds", self.seeds).updates("cells", self.cells.current).add()
+    }
+
+    fn resolve(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<ImageHandle, GpuError> {
+        let diffuse = frame.color_image("diffuse")?;
+        let samples = frame.image("hpsf_samples", vk::Format::R32_UINT)?;
+        let touched = u64::from(frame.pixels());
+        let pass = reads_vertices(frame.pass("hpsf resolve", "filter/hpsf/resolve"), terms).constant(CAPACITY, self.capacity);
+        let pass = pass.reads("fingerprints", self.fingerprints.current).touching(touched * FINGERPRINT);
+        let pass = pass.reads("cells", self.cells.current).touching(touched * CELL);
+        pass.writes("diffuse", diffuse).writes("hpsf_samples", samples).add()?;
+        Ok(diffuse)
+    }
+}
+
+/// A pair that is swapped with every frame, or one buffer in both places.
+fn kept(frame: &mut FrameBuilder, name: &str, size: u64, swapped: bool) -> Result<History<BufferHandle>, GpuError> {
+    if swapped {
+        return frame.buffer_history(name, size);
+    }
+    let buffer = frame.kept_buffer(name, size)?;
+    Ok(History { previous: buffer, current: buffer })
+}
+
+fn reads_vertices<'b, 'a>(pass: PassBuilder<'b, 'a>, terms: &Terms) -> PassBuilder<'b, 'a> {
+    let pass = pass.reads("diffuse_direct", terms.diffuse_direct).reads("diffuse_indirect", terms.diffuse_indirect);
+    let pass = pass.reads("filter_position", terms.vertex.position).reads("filter_normal", terms.vertex.normal);
+    pass.reads("filter_incident", terms.vertex.incident)
+}
+
+/// Bits of the largest sample in fixed point, so that no sum of so many overflows 64 (fixed_point.glsl).
+fn sample_bits(insertions: u64) -> u32 {
+    (64 - (insertions + 1).next_power_of_two().trailing_zeros()).min(40)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_sum_of_largest_samples_overflows() {
+        for insertions in [1, 640 * 360, 1920 * 1080 * 4, 3840 * 2160 * 4, 7680 * 4320 * 4] {
+            let bits = sample_bits(insertions);
+            let sum = u128::from(insertions) * (1u128 << bits);
+            assert!(sum < 1 << 64, "{insertions}: {bits}");
+            assert!(bits == 40 || 2 * sum >= 1 << 63, "{insertions}: {bits} wastes bits");
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! `hpsf`: the radiance behind the filter vertex, averaged over cells of the world that a hash table keeps.
+
+use super::{PassOptions, Technique};
+use crate::display::composite;
+use crate::filter::hpsf::{self, Options};
+use crate::frame::{FrameBuilder, ImageHandle};
+use crate::gpu::GpuError;
+use crate::paths::{gbuffer, megakernel};
+
+pub(super) const TECHNIQUE: Technique = Technique {
+    name: "hpsf",
+    help: "one path per pixel; what arrives at its first diffuse vertex is averaged over hashed cells of the world, and over frames",
+    accumulates: false,
+    max_spp: 1,
+    defaults: &[],
+    passes,
+};
+
+fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
+    if options.gbuffer {
+        gbuffer::add(frame)?;
+    }
+    let terms = megakernel::add_with_terms(frame)?;
+    let number = |key| options.parameters.number(key);
+    let table = Options {
+        cells_per_pixel: number("hpsf.cells"),
+        levels: number("hpsf.levels") as u32,
+        swapped: number("hpsf.table") == 1.0,
+        float_sums: number("hpsf.sums") == 1.0,
+    };
+    let diffuse = hpsf::add(frame, &terms, table)?;
+    composite::add_filtered(frame, &terms, diffuse)
+}

@@ -1,0 +1,26 @@
+//! `sspsf`: the radiance behind the filter vertex, averaged over a window of the screen.
+
+use super::{PassOptions, Technique};
+use crate::display::composite;
+use crate::filter::sspsf;
+use crate::frame::{FrameBuilder, ImageHandle};
+use crate::gpu::GpuError;
+use crate::paths::{gbuffer, megakernel};
+
+pub(super) const TECHNIQUE: Technique = Technique {
+    name: "sspsf",
+    help: "one path per pixel; what arrives at its first diffuse vertex is averaged over similar vertices nearby on the screen",
+    accumulates: false,
+    max_spp: 1,
+    defaults: &[],
+    passes,
+};
+
+fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
+    if options.gbuffer {
+        gbuffer::add(frame)?;
+    }
+    let terms = megakernel::add_with_terms(frame)?;
+    let diffuse = sspsf::add(frame, &terms)?;
+    composite::add_filtered(frame, &terms, diffuse)
+}

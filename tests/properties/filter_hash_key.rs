@@ -1,0 +1,107 @@
+//! Keys of cells and their hashes against integers in Rust.
+
+use crate::common;
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg32;
+use std::collections::HashSet;
+
+const CELL: &str = r#"
+#include "lib/hash_key.glsl"
+struct In { vec3 local; ivec3 steps; int log2_step; int level; };
+struct Out { ivec3 cell; };
+void kernel(uint i) {
+    In v = inputs[i];
+    outputs[i] = Out(cell_of(v.local, v.steps, v.log2_step, v.level));
+}
+"#;
+
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Place {
+    local: [f32; 3],
+    steps: [i32; 3],
+    log2_step: i32,
+    level: i32,
+}
+
+/// floor((local + steps 2^log2_step) / 2^level) modulo 2^32, exactly: everything is a whole number of 2^-40 metres.
+fn oracle(place: &Place) -> [i32; 3] {
+    let unit = 40;
+    std::array::from_fn(|axis| {
+        let local = (f64::from(place.local[axis]) * 2f64.powi(unit)) as i128;
+        let world = local + (i128::from(place.steps[axis]) << (unit + place.log2_step));
+        (world >> (unit + place.level)) as i32
+    })
+}
+
+/// Positions that are multiples of 2^-10 metres, on both sides of the origin, whose step is 2^3 metres.
+fn places(seed: u64) -> Vec<Place> {
+    let mut rng = Pcg32::seed_from_u64(seed);
+    let place = |_| Place {
+        local: [0; 3].map(|_| rng.random_range(-16_384..16_384) as f32 / 1024.0),
+        steps: [0; 3].map(|_| rng.random_range(-200_000..200_000)),
+        log2_step: 3,
+        level: rng.random_range(-12..=5),
+    };
+    (0..50_000).map(place).collect()
+}
+
+#[test]
+fn cells_are_floors_of_world_positions_on_both_sides_of_zero_and_a_million_metres_away() {
+    let mut places = places(1);
+    places.extend([-1.0f32, -0.25, 0.0, 0.25].map(|x| Place { local: [x, -x, 2.0 * x], steps: [0; 3], log2_step: 0, level: -1 }));
+    let cells: Vec<[i32; 3]> = common::run_kernel(&common::gpu(), CELL, &places);
+    for (place, cell) in places.iter().zip(cells) {
+        assert_eq!(cell, oracle(place), "{place:?}");
+    }
+}
+
+#[test]
+fn a_move_of_the_origin_changes_no_key() {
+    let mut rng = Pcg32::seed_from_u64(2);
+    let before = places(3);
+    let moved = |place: &Place| {
+        let by = [0; 3].map(|_| rng.random_range(-3..=3));
+        let local = std::array::from_fn(|axis| place.local[axis] - (8 * by[axis]) as f32);
+        Place { local, steps: std::array::from_fn(|axis| place.steps[axis] + by[axis]), ..*place }
+    };
+    let after: Vec<Place> = before.iter().map(moved).collect();
+    let gpu = common::gpu();
+    let cells: [Vec<[i32; 3]>; 2] = [&before, &after].map(|places| common::run_kernel(&gpu, CELL, places));
+    assert_eq!(cells[0], cells[1]);
+}
+
+const HASHES: &str = r#"
+#include "lib/hash_key.glsl"
+struct In { ivec3 cell; int level; uint normal; };
+struct Out { uint index; uint fingerprint; uint without_normal; };
+void kernel(uint i) {
+    CellKey key = CellKey(inputs[i].cell, inputs[i].level, inputs[i].normal);
+    outputs[i] = Out(hash_index(key, true), hash_fingerprint(key), hash_index(key, false));
+}
+"#;
+
+/// 64,000 neighbouring keys around zero. By chance two of them share a fingerprint with probability 0.48, ten pairs with 10^-9; 256 bins
+/// of an even index exceed a chi-square of 400 with 10^-8.
+#[test]
+fn hashes_differ_across_negative_coordinates_levels_and_normals() {
+    let mut keys = Vec::new();
+    for (x, y, z) in (-10..10).flat_map(|x| (-10..10).flat_map(move |y| (-10..10).map(move |z| (x, y, z)))) {
+        keys.extend([-5, 2].into_iter().flat_map(|level| [0, 1, 2, 255].map(|normal| [x, y, z, level, normal])));
+    }
+    let hashes: Vec<[u32; 3]> = common::run_kernel(&common::gpu(), HASHES, &keys);
+    let fingerprints: HashSet<u32> = hashes.iter().map(|hash| hash[1]).collect();
+    assert!(fingerprints.len() + 10 > keys.len() && !fingerprints.contains(&0), "{} fingerprints", fingerprints.len());
+    let both: HashSet<[u32; 2]> = hashes.iter().map(|hash| [hash[0], hash[1]]).collect();
+    assert_eq!(both.len(), keys.len());
+    for column in 0..2 {
+        let mut bins = [0u32; 256];
+        hashes.iter().for_each(|hash| bins[(hash[column] >> 24) as usize] += 1);
+        let expected = keys.len() as f64 / 256.0;
+        let chi_square: f64 = bins.iter().map(|&count| (f64::from(count) - expected).powi(2) / expected).sum();
+        assert!(chi_square < 400.0, "{chi_square}");
+    }
+    for (key, hash) in keys.chunks(4).zip(hashes.chunks(4)) {
+        assert!(hash.iter().all(|h| h[2] == hash[0][2]), "{key:?}: normals share a place where only the fingerprint has them");
+    }
+}

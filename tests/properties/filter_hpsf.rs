@@ -1,0 +1,91 @@
+//! hpsf's table: the same in every run, exact in its sums, harmless when full, forgotten by a restart.
+
+use crate::common;
+use crate::common::render::{builtin, output, render_frames, set, settings};
+use pathspace::display::Image;
+use pathspace::technique::Settings;
+
+fn with(values: &[(&str, &str)]) -> Settings {
+    let mut settings = settings(64, 36);
+    set(&mut settings, values);
+    settings
+}
+
+fn bits(image: &Image) -> Vec<[u32; 3]> {
+    image.pixels.iter().map(|pixel| pixel.map(f32::to_bits)).collect()
+}
+
+/// Of the radiance behind the filter vertices, all pixels and channels.
+fn sums(gpu: &pathspace::gpu::Gpu, settings: &Settings) -> ([f64; 2], Image) {
+    let renderer = render_frames(gpu, &builtin("cornell"), settings, "hpsf", 1);
+    let sum = |name: &str| output(&renderer, name).pixels.iter().flatten().map(|&v| f64::from(v)).sum::<f64>();
+    ([sum("diffuse"), sum("diffuse_direct") + sum("diffuse_indirect")], output(&renderer, "hpsf_samples"))
+}
+
+#[test]
+fn fixed_point_gives_the_same_bits_in_every_run() {
+    let gpu = common::gpu();
+    let scene = builtin("cornell");
+    for table in ["persistent", "swapped"] {
+        let settings = with(&[("hpsf.table", table), ("hpsf.cells", "4")]);
+        let [a, b] = [0, 1].map(|_| render_frames(&gpu, &scene, &settings, "hpsf", 4));
+        assert_eq!(bits(&a.picture().unwrap()), bits(&b.picture().unwrap()), "{table}");
+        let seen = output(&a, "attenuation").pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
+        let filtered = output(&a, "hpsf_samples").pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
+        assert!(filtered >= seen && seen > 500, "{table}: {filtered} of {seen} pixels are filtered");
+    }
+}
+
+/// Each pixel reads the cell that its sample went to: the sum over pixels is that of the samples, whatever the cells are. With a unit of
+/// 2^-32 the low words of fixed point overflow into the high ones again and again.
+#[test]
+fn cells_hold_exactly_what_went_in() {
+    let gpu = common::gpu();
+    for sums_in in ["fixed", "float"] {
+        let own = [("hpsf.lookups", "0"), ("hpsf.levels", "1"), ("hpsf.time", "frame"), ("hpsf.sums", sums_in), ("hpsf.largest", "256")];
+        let ([filtered, raw], samples) = sums(&gpu, &with(&own));
+        assert!((filtered / raw - 1.0).abs() < 2e-6, "{sums_in}: {filtered} {raw}");
+        assert!(samples.pixels.iter().any(|pixel| pixel[0] > 20.0), "{sums_in}: cells of many samples");
+    }
+}
+
+/// 64 slots for some hundreds of cells: the pixels that find none keep their own sample, and not one is lost.
+#[test]
+fn a_full_table_leaves_pixels_unfiltered_and_darkens_nothing() {
+    let gpu = common::gpu();
+    let tiny = [("hpsf.cells", "0.001"), ("hpsf.width", "4"), ("hpsf.lookups", "0"), ("hpsf.levels", "1")];
+    let ([filtered, raw], samples) = sums(&gpu, &with(&tiny));
+    assert!((filtered / raw - 1.0).abs() < 2e-6, "{filtered} {raw}");
+    let found = samples.pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
+    assert!(found > 0 && found < samples.pixels.len() / 3, "{found} pixels are filtered");
+}
+
+#[test]
+fn a_restart_forgets_every_frame_before_it() {
+    let gpu = common::gpu();
+    let scene = builtin("cornell");
+    for table in ["persistent", "swapped"] {
+        let settings = with(&[("hpsf.table", table), ("hpsf.cells", "4")]);
+        let mut used = render_frames(&gpu, &scene, &settings, "hpsf", 3);
+        used.restart(7, 0).unwrap();
+        used.render_frame().unwrap();
+        let fresh = render_frames(&gpu, &scene, &Settings { seed: 7, ..settings }, "hpsf", 1);
+        assert_eq!(bits(&used.picture().unwrap()), bits(&fresh.picture().unwrap()), "{table}");
+    }
+}
+
+/// Frames of a still camera are integrated: cells know the samples of all of them, and less noise is left.
+#[test]
+fn frames_add_up_where_time_is_integrated() {
+    let gpu = common::gpu();
+    let scene = builtin("cornell");
+    let most = |time: &str, table: &str, frames| {
+        let settings = with(&[("hpsf.time", time), ("hpsf.table", table), ("hpsf.jitter", "0"), ("hpsf.levels", "1")]);
+        let samples = output(&render_frames(&gpu, &scene, &settings, "hpsf", frames), "hpsf_samples");
+        samples.pixels.iter().map(|pixel| pixel[0]).fold(0.0, f32::max)
+    };
+    let one = most("integrate", "persistent", 1);
+    assert_eq!(most("integrate", "persistent", 4), 4.0 * one);
+    assert_eq!(most("integrate", "swapped", 4), 4.0 * one);
+    assert_eq!(most("frame", "persistent", 4), one);
+}
