@@ -186,7 +186,7 @@ fn time_figures(timings: &Timings, load_ms: f64, frames: f64) -> BTreeMap<String
         ("build_ms", build.order + build.upload + build.structure + build.pipelines),
         ("rays_per_pixel", timings.rays.per_pixel),
         ("mrays_per_second", timings.rays.mrays_per_second),
-        ("memory_bytes", timings.memory_bytes.total as f64),
+        ("memory_bytes", timings.memory_bytes.peak as f64),
         ("bytes_read", read as f64),
         ("bytes_written", written as f64),
         ("bandwidth", (read + written) as f64 / frame * 1e-6),

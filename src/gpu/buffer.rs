@@ -87,7 +87,8 @@ impl Gpu {
             bytes: requirements.size,
             message: error.to_string(),
         })?;
-        self.0.allocated.fetch_add(allocation.size(), Ordering::Relaxed);
+        let before = self.0.allocated.fetch_add(allocation.size(), Ordering::Relaxed);
+        self.0.most_allocated.fetch_max(before + allocation.size(), Ordering::Relaxed);
         Ok(allocation)
     }
 

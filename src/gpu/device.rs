@@ -37,6 +37,8 @@ pub(super) struct Inner {
     pub queue_family: u32,
     pub allocator: ManuallyDrop<Mutex<Allocator>>,
     pub allocated: AtomicU64,
+    /// The most that it has been.
+    pub most_allocated: AtomicU64,
     pub pipeline_cache: ManuallyDrop<PipelineCache>,
     pub capabilities: Capabilities,
     pub debug: Option<ext::debug_utils::Device>,
@@ -76,6 +78,7 @@ impl Gpu {
             queue_family,
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
             allocated: AtomicU64::new(0),
+            most_allocated: AtomicU64::new(0),
             pipeline_cache: ManuallyDrop::new(PipelineCache::load(&device, &capabilities)?),
             acceleration_structure: capabilities.ray_query.then(|| khr::acceleration_structure::Device::new(&instance.raw, &device)),
             debug: instance.debug_device(&device),
@@ -111,6 +114,16 @@ impl Gpu {
     /// Bytes of buffers and images alive now.
     pub fn allocated_bytes(&self) -> u64 {
         self.0.allocated.load(Ordering::Relaxed)
+    }
+
+    /// The most that [`Self::allocated_bytes`] has been since [`Self::watch_memory`], staging included.
+    pub fn peak_bytes(&self) -> u64 {
+        self.0.most_allocated.load(Ordering::Relaxed)
+    }
+
+    /// Begins to look for the peak anew.
+    pub fn watch_memory(&self) {
+        self.0.most_allocated.store(self.allocated_bytes(), Ordering::Relaxed);
     }
 
     /// Everything that the validation layer has said; empty where it is off.

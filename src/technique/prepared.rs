@@ -41,6 +41,7 @@ impl PreparedScene {
         let trees = accel::order_scene(&mut scene);
         build_ms.order = clock.lap();
 
+        gpu.watch_memory();
         let before = gpu.allocated_bytes();
         let buffers = SceneBuffers::new(gpu, &scene)?;
         let placed = PlacedScene::new(gpu, &scene, frames_in_flight)?;

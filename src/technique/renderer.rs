@@ -185,7 +185,8 @@ impl Renderer {
         let mut timings = self.recorder.report(self.gpu.capabilities(), self.prepared.entry.name, &self.graph);
         timings.build_ms = self.prepared.build_ms;
         timings.rays = self.count_rays(timings.frame_ms_median)?;
-        timings.memory_bytes = MemoryUse { total: self.gpu.allocated_bytes(), ..self.prepared.memory }.per_triangle();
+        timings.memory_bytes =
+            MemoryUse { total: self.gpu.allocated_bytes(), peak: self.gpu.peak_bytes(), ..self.prepared.memory }.per_triangle();
         Ok(timings)
     }
 

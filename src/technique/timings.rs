@@ -85,6 +85,8 @@ pub struct MemoryUse {
     pub structure: u64,
     pub images: u64,
     pub total: u64,
+    /// The most at any time since the scene was prepared, staging included.
+    pub peak: u64,
     pub triangles: u64,
     /// Scene and structure, without textures.
     pub per_triangle: f64,
