@@ -130,7 +130,7 @@ def add_lamp(document):
     cone = lathe([(0.128, 0.3), (0.13, 0.3), (0.05, 0.42), (0.048, 0.42), (0.128, 0.3)], 160, smooth=False)
     mesh = document.add_mesh("lamp", (merge(stand, stem), brass), (cone, shade))
     lamp = document.add_node("lamp", mesh=mesh, translation=[0.37, 0, -0.2])
-    light = document.add_light(type="point", name="bulb", color=[1.0, 0.62, 0.3], intensity=0.6, extras={"radius": 0.04})
+    light = document.add_light(type="point", name="bulb", color=[1.0, 0.62, 0.3], intensity=0.6, extras={"radius": 0.06})
     document.add_node("bulb", lamp, translation=[0, 0.325, 0.055], extensions=light)
 
 
