@@ -5,7 +5,8 @@
 //!
 //! Three passes. collect: each pixel's sample into a cell, 56 bytes read per pixel, and per level 4 bytes of fingerprint read and 28
 //! (float: 16) of sums updated. merge: over slots, 4 bytes read each, and for those taken 32 (16) of sums, 16 of seed and 16 of
-//! mean. resolve: 56 bytes read and 20 written per pixel, 20 read per lookup and level.
+//! mean. resolve: 56 bytes read and 20 written per pixel, 20 read per lookup and level. Where one of [`STATISTICS`] is asked for, a
+//! fourth pass puts out what became of the insertions.
 
 use crate::frame::{BufferHandle, FrameBuilder, History, ImageHandle, PassBuilder};
 use crate::gpu::{GpuError, vk};
@@ -15,6 +16,9 @@ use crate::paths::megakernel::Terms;
 const CAPACITY: u32 = 221;
 const SAMPLE_BITS: u32 = 222;
 const FLOAT_SUMS: u32 = 223;
+
+/// Names of outputs about the table: slots looked at for each pixel's sample, its failed insertions, taken slots.
+pub const STATISTICS: [&str; 3] = ["hpsf_probed", "hpsf_failed", "hpsf_taken"];
 
 /// Bytes per slot.
 const FINGERPRINT: u64 = 4;
@@ -30,6 +34,8 @@ pub struct Options {
     pub swapped: bool,
     /// Float atomics, where the device has them.
     pub float_sums: bool,
+    /// Put out [`STATISTICS`].
+    pub statistics: bool,
 }
 
 struct Table {
@@ -50,6 +56,9 @@ pub fn add(frame: &mut FrameBuilder, terms: &Terms, options: Options) -> Result<
     }
     table.collect(frame, terms)?;
     table.merge(frame)?;
+    if options.statistics {
+        table.statistics(frame, terms)?;
+    }
     table.resolve(frame, terms)
 }
 
@@ -77,7 +86,7 @@ impl Table {
     fn collect(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {
         let (stem, sum) = if self.float_sums { ("filter/hpsf/collect_float", 16) } else { ("filter/hpsf/collect_fixed", 28) };
         let touched = self.insertions;
-        let pass = reads_vertices(frame.pass("hpsf collect", stem), terms).constant(CAPACITY, self.capacity);
+        let pass = reads_samples(frame.pass("hpsf collect", stem), terms).constant(CAPACITY, self.capacity);
         let pass = pass.constant(SAMPLE_BITS, sample_bits(self.insertions));
         let pass = pass.updates("fingerprints", self.fingerprints.current).touching(touched * FINGERPRINT);
         let pass = pass.updates("sums", self.sums).touching(touched * sum).writes("seeds", self.seeds);
@@ -95,11 +104,18 @@ impl Table {
         let diffuse = frame.color_image("diffuse")?;
         let samples = frame.image("hpsf_samples", vk::Format::R32_UINT)?;
         let touched = u64::from(frame.pixels());
-        let pass = reads_vertices(frame.pass("hpsf resolve", "filter/hpsf/resolve"), terms).constant(CAPACITY, self.capacity);
+        let pass = reads_samples(frame.pass("hpsf resolve", "filter/hpsf/resolve"), terms).constant(CAPACITY, self.capacity);
         let pass = pass.reads("fingerprints", self.fingerprints.current).touching(touched * FINGERPRINT);
         let pass = pass.reads("cells", self.cells.current).touching(touched * CELL);
         pass.writes("diffuse", diffuse).writes("hpsf_samples", samples).add()?;
         Ok(diffuse)
+    }
+
+    fn statistics(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {
+        let images = STATISTICS.map(|name| frame.image(name, vk::Format::R32_UINT).map(|image| (name, image)));
+        let pass = reads_vertices(frame.pass("hpsf statistics", "filter/hpsf/statistics"), terms).constant(CAPACITY, self.capacity);
+        let pass = pass.reads("fingerprints", self.fingerprints.current);
+        images.into_iter().try_fold(pass, |pass, image| image.map(|(name, image)| pass.writes(name, image)))?.add()
     }
 }
 
@@ -112,8 +128,12 @@ fn kept(frame: &mut FrameBuilder, name: &str, size: u64, swapped: bool) -> Resul
     Ok(History { previous: buffer, current: buffer })
 }
 
-fn reads_vertices<'b, 'a>(pass: PassBuilder<'b, 'a>, terms: &Terms) -> PassBuilder<'b, 'a> {
+fn reads_samples<'b, 'a>(pass: PassBuilder<'b, 'a>, terms: &Terms) -> PassBuilder<'b, 'a> {
     let pass = pass.reads("diffuse_direct", terms.diffuse_direct).reads("diffuse_indirect", terms.diffuse_indirect);
+    reads_vertices(pass, terms)
+}
+
+fn reads_vertices<'b, 'a>(pass: PassBuilder<'b, 'a>, terms: &Terms) -> PassBuilder<'b, 'a> {
     let pass = pass.reads("filter_position", terms.vertex.position).reads("filter_normal", terms.vertex.normal);
     pass.reads("filter_incident", terms.vertex.incident)
 }

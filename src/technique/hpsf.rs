@@ -12,22 +12,27 @@ pub(super) const TECHNIQUE: Technique = Technique {
     help: "one path per pixel; what arrives at its first diffuse vertex is averaged over hashed cells of the world, and over frames",
     accumulates: false,
     max_spp: 1,
+    extra_outputs: &hpsf::STATISTICS,
     defaults: &[],
     passes,
 };
 
 fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
-    if options.gbuffer {
+    if options.wants(&gbuffer::OUTPUTS) {
         gbuffer::add(frame)?;
     }
     let terms = megakernel::add_with_terms(frame)?;
+    let diffuse = hpsf::add(frame, &terms, table(options))?;
+    composite::add_filtered(frame, &terms, diffuse)
+}
+
+pub(super) fn table(options: PassOptions) -> Options {
     let number = |key| options.parameters.number(key);
-    let table = Options {
+    Options {
         cells_per_pixel: number("hpsf.cells"),
         levels: number("hpsf.levels") as u32,
         swapped: number("hpsf.table") == 1.0,
         float_sums: number("hpsf.sums") == 1.0,
-    };
-    let diffuse = hpsf::add(frame, &terms, table)?;
-    composite::add_filtered(frame, &terms, diffuse)
+        statistics: options.wants(&hpsf::STATISTICS),
+    }
 }

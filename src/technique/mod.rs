@@ -30,6 +30,8 @@ pub struct Technique {
     pub accumulates: bool,
     /// Most samples per pixel and frame.
     pub max_spp: u32,
+    /// Outputs that are made only where asked for, beside the g-buffer's.
+    pub(crate) extra_outputs: &'static [&'static str],
     /// Parameters whose default differs here.
     pub defaults: &'static [(&'static str, &'static str)],
     /// Declares the passes; returns the picture.
@@ -50,10 +52,17 @@ impl Technique {
 /// What a technique's passes depend on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PassOptions<'a> {
-    /// An output of the g-buffer was asked for, also where the technique itself does not need it.
-    pub gbuffer: bool,
+    /// Outputs that were asked for, beside the picture.
+    pub outputs: &'a [String],
     /// Those that the host needs itself: sizes, and which passes there are.
     pub parameters: &'a Parameters,
+}
+
+impl PassOptions<'_> {
+    /// Whether one of these outputs was asked for, which the technique itself may not need.
+    fn wants(&self, outputs: &[&str]) -> bool {
+        self.outputs.iter().any(|name| outputs.contains(&name.as_str()))
+    }
 }
 
 pub static REGISTRY: [Technique; 4] = [reference::TECHNIQUE, unfiltered::TECHNIQUE, sspsf::TECHNIQUE, hpsf::TECHNIQUE];

@@ -11,13 +11,14 @@ pub(super) const TECHNIQUE: Technique = Technique {
     help: "path tracing without a filter, accumulated over all frames",
     accumulates: true,
     max_spp: u32::MAX,
+    extra_outputs: &[],
     // Many samples filter textures themselves, and better.
     defaults: &[("textures.level", "zero")],
     passes,
 };
 
 fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
-    if options.gbuffer {
+    if options.wants(&gbuffer::OUTPUTS) {
         gbuffer::add(frame)?;
     }
     let radiance = megakernel::add(frame)?;

@@ -54,8 +54,8 @@ impl Renderer {
         let globals = Globals::new(gpu, &info)?;
         let constants = [prepared.effects.specialization(), settings.parameters.constants(), prepared.structure.constants()].concat();
         let mut frame = FrameBuilder::new(gpu, &globals, prepared.entry.stem, settings.parameters.precision(), constants, settings.extent);
-        let gbuffer = settings.outputs.iter().any(|name| gbuffer::OUTPUTS.contains(&name.as_str()));
-        let picture = (technique.passes)(&mut frame, PassOptions { gbuffer, parameters: &settings.parameters })?;
+        let options = PassOptions { outputs: &settings.outputs, parameters: &settings.parameters };
+        let picture = (technique.passes)(&mut frame, options)?;
         let graph = frame.build();
         check_outputs(&settings, &graph)?;
         prepared.build_ms.pipelines = clock.lap();
@@ -255,7 +255,8 @@ impl Renderer {
 
 fn check_outputs(settings: &Settings, graph: &FrameGraph) -> Result<(), RenderError> {
     let Some(name) = settings.outputs.iter().find(|name| graph.image(name).is_none()) else { return Ok(()) };
-    let mut known: Vec<&str> = graph.images().map(|(name, _)| name).chain(gbuffer::OUTPUTS).collect();
+    let extra = gbuffer::OUTPUTS.iter().chain(settings.technique.extra_outputs).copied();
+    let mut known: Vec<&str> = graph.images().map(|(name, _)| name).chain(extra).collect();
     known.sort_unstable();
     known.dedup();
     Err(RenderError::UnknownOutput { technique: settings.technique.name, name: name.clone(), known: known.join(", ") })

@@ -12,12 +12,13 @@ pub(super) const TECHNIQUE: Technique = Technique {
     help: "one path per pixel; what arrives at its first diffuse vertex is averaged over similar vertices nearby on the screen",
     accumulates: false,
     max_spp: 1,
+    extra_outputs: &[],
     defaults: &[],
     passes,
 };
 
 fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
-    if options.gbuffer {
+    if options.wants(&gbuffer::OUTPUTS) {
         gbuffer::add(frame)?;
     }
     let terms = megakernel::add_with_terms(frame)?;

@@ -11,6 +11,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
     help: "one path per pixel, its radiance terms kept apart and recombined; each frame stands alone",
     accumulates: false,
     max_spp: 1,
+    extra_outputs: &[],
     defaults: &[],
     passes,
 };

@@ -3,7 +3,7 @@
 use crate::common;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 const CELL: &str = r#"
 #include "lib/hash_key.glsl"
@@ -104,4 +104,48 @@ fn hashes_differ_across_negative_coordinates_levels_and_normals() {
     for (key, hash) in keys.chunks(4).zip(hashes.chunks(4)) {
         assert!(hash.iter().all(|h| h[2] == hash[0][2]), "{key:?}: normals share a place where only the fingerprint has them");
     }
+}
+
+/// hpsf.probes by default.
+const PROBES: usize = 8;
+
+/// A floor of cells with a wall, as scenes have them, at two levels and with four normals each.
+fn keys(count: usize) -> Vec<[i32; 5]> {
+    let mut rng = Pcg32::seed_from_u64(11);
+    let mut key = |i: usize| {
+        let [u, v] = [0; 2].map(|_| rng.random_range(-500..500));
+        let cell = if i.is_multiple_of(3) { [u, v, -3] } else { [u, 0, v] };
+        [cell[0], cell[1], cell[2], -4 + (i % 2) as i32, rng.random_range(0..4)]
+    };
+    (0..count).map(&mut key).collect()
+}
+
+/// Inserts keys one by one as filter/hpsf/collect.glsl, remembering the whole key of each slot; counts those that are taken for another.
+fn collisions(keys: &[[i32; 5]], hashes: &[[u32; 3]], slots: usize, fingerprint_bits: u32) -> usize {
+    let mut table: HashMap<usize, (u32, [i32; 5])> = HashMap::new();
+    let mut taken_for_another = 0;
+    for (key, [index, fingerprint, _]) in keys.iter().zip(hashes) {
+        let home = ((u64::from(*index) * slots as u64) >> 32) as usize;
+        let fingerprint = fingerprint >> (32 - fingerprint_bits);
+        let probes = || (0..PROBES).map(|i| (home + i) % slots);
+        match probes().find(|slot| table.get(slot).is_some_and(|(held, _)| *held == fingerprint)) {
+            Some(slot) => taken_for_another += usize::from(table[&slot].1 != *key),
+            None => {
+                let free = probes().find(|slot| !table.contains_key(slot));
+                free.into_iter().for_each(|slot| drop(table.insert(slot, (fingerprint, *key))));
+            }
+        }
+    }
+    taken_for_another
+}
+
+/// 200,000 keys in a table of as many slots: each is held against at most 8 fingerprints, so that one of 32 bits is taken for another's
+/// with 200,000 * 8 / 2^32 = 0.0004 at most in all. With 16 bits the same count finds some: up to 24, and at half load about half of it.
+#[test]
+fn fingerprints_tell_keys_apart_as_exact_keys_do() {
+    let keys = keys(200_000);
+    let hashes: Vec<[u32; 3]> = common::run_kernel(&common::gpu(), HASHES, &keys);
+    assert_eq!(collisions(&keys, &hashes, keys.len(), 32), 0);
+    let short = collisions(&keys, &hashes, keys.len(), 16);
+    assert!((1..=48).contains(&short), "{short} collisions of 16 bits");
 }
