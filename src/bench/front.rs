@@ -87,7 +87,7 @@ impl Front {
 }
 
 fn within(wish: &Wish) -> String {
-    wish.budget_ms.map(|ms| format!(" within {ms} ms")).unwrap_or_default()
+    wish.budget_ms.map(|ms| format!(" within {} ms", ms as f32)).unwrap_or_default()
 }
 
 fn as_measured(candidate: &Candidate, pixels: f64) -> Choice {

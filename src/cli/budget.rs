@@ -39,7 +39,9 @@ impl Budget {
     /// What was chosen and why, for people.
     pub fn explain(&self) -> String {
         let Choice { candidate, samples, predicted_ms, predicted_flip, reason } = &self.choice;
-        let asked = [self.wish.budget_ms.map(|ms| format!("{ms} ms")), self.wish.target_flip.map(|flip| format!("FLIP {flip}"))];
+        // As they were typed.
+        let asked =
+            [self.wish.budget_ms.map(|ms| format!("{} ms", ms as f32)), self.wish.target_flip.map(|flip| format!("FLIP {}", flip as f32))];
         format!(
             "chosen for {}: {} at {samples:.2} samples per pixel, predicted {predicted_ms:.2} ms and FLIP {predicted_flip:.3}: {reason}",
             asked.into_iter().flatten().collect::<Vec<_>>().join(" and "),
@@ -66,6 +68,11 @@ impl Budget {
     pub fn outcome(&self, timings: &Timings) -> Option<String> {
         let budget = self.wish.budget_ms?;
         let median = timings.frame_ms_median;
-        Some(format!("budget {budget} ms, median {median:.2} ms over {} frames: {:+.1} %", timings.frames, 100.0 * (median / budget - 1.0)))
+        Some(format!(
+            "budget {} ms, median {median:.2} ms over {} frames: {:+.1} %",
+            budget as f32,
+            timings.frames,
+            100.0 * (median / budget - 1.0)
+        ))
     }
 }
