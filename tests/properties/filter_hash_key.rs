@@ -131,8 +131,9 @@ fn collisions(keys: &[[i32; 5]], hashes: &[[u32; 3]], slots: usize, fingerprint_
         match probes().find(|slot| table.get(slot).is_some_and(|(held, _)| *held == fingerprint)) {
             Some(slot) => taken_for_another += usize::from(table[&slot].1 != *key),
             None => {
-                let free = probes().find(|slot| !table.contains_key(slot));
-                free.into_iter().for_each(|slot| drop(table.insert(slot, (fingerprint, *key))));
+                if let Some(free) = probes().find(|slot| !table.contains_key(slot)) {
+                    table.insert(free, (fingerprint, *key));
+                }
             }
         }
     }
