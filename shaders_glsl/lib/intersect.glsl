@@ -21,21 +21,28 @@ vec3 finite_reciprocal(vec3 direction) {
 /// What `intersect_box` returns for a miss: no box is entered there or behind.
 const float MISSED = 3.4028235e38;
 
+/// min and max of numbers: the built-in ones look for NaN on a software driver, at two more instructions each.
+float smaller(float a, float b) {
+    return a < b ? a : b;
+}
+
+float larger(float a, float b) {
+    return a > b ? a : b;
+}
+
 /// Where the ray enters the box, at least t_min; MISSED where it does not in (t_min, t_max).
 float intersect_box(vec3 origin, vec3 reciprocal, float t_min, float t_max, vec3 box_min, vec3 box_max) {
-    vec3 t0 = (box_min - origin) * reciprocal;
-    vec3 t1 = (box_max - origin) * reciprocal;
-    vec3 lower = min(t0, t1);
-    vec3 upper = max(t0, t1);
-    float near = max(max(lower.x, lower.y), max(lower.z, t_min));
-    float far = min(min(upper.x, upper.y), min(upper.z, t_max));
+    bvec3 backwards = lessThan(reciprocal, vec3(0.0));
+    vec3 lower = (mix(box_min, box_max, backwards) - origin) * reciprocal;
+    vec3 upper = (mix(box_max, box_min, backwards) - origin) * reciprocal;
+    float near = larger(larger(lower.x, lower.y), larger(lower.z, t_min));
+    float far = smaller(smaller(upper.x, upper.y), smaller(upper.z, t_max));
     // 1 + 2 gamma(3): three roundings on each side.
     return near <= far * 1.0000004 ? near : MISSED;
 }
 
-/// A ray's own half of the watertight test: its direction's largest component becomes z, and the shear makes it the z axis.
+/// A ray's own half of the watertight test, but for its origin: its direction's largest component becomes z, and the shear makes it the z axis.
 struct TriangleRay {
-    vec3 origin;
     /// x / z, y / z, 1 / z of the permuted direction.
     vec3 shear;
     uint axis;
@@ -46,11 +53,11 @@ vec3 axis_last(vec3 v, uint axis) {
     return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v;
 }
 
-TriangleRay triangle_ray(vec3 origin, vec3 direction) {
+TriangleRay triangle_ray(vec3 direction) {
     vec3 size = abs(direction);
     uint axis = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
     vec3 d = axis_last(direction, axis);
-    return TriangleRay(origin, vec3(d.xy / d.z, 1.0 / d.z), axis);
+    return TriangleRay(vec3(d.xy / d.z, 1.0 / d.z), axis);
 }
 
 /// Whether the triangle's plane lies ahead of the ray's origin by more than rounding can make of 0. A hit's distance is a weighted sum of
@@ -76,10 +83,12 @@ bool lies_ahead(vec3 origin, vec3 direction, vec3 p0, vec3 p1, vec3 p2) {
 }
 
 /// Distance, and barycentrics of p1 and p2, of a hit in (t_min, t_max).
-bool intersect_watertight(TriangleRay ray, vec3 p0, vec3 p1, vec3 p2, float t_min, float t_max, out float t, out vec2 barycentrics) {
-    vec3 a = axis_last(p0 - ray.origin, ray.axis);
-    vec3 b = axis_last(p1 - ray.origin, ray.axis);
-    vec3 c = axis_last(p2 - ray.origin, ray.axis);
+bool intersect_watertight(
+    vec3 origin, TriangleRay ray, vec3 p0, vec3 p1, vec3 p2, float t_min, float t_max, out float t, out vec2 barycentrics
+) {
+    vec3 a = axis_last(p0 - origin, ray.axis);
+    vec3 b = axis_last(p1 - origin, ray.axis);
+    vec3 c = axis_last(p2 - origin, ray.axis);
     // Fused operations would round one triangle's half of an edge unlike its neighbour's.
     precise vec2 a2 = a.xy - ray.shear.xy * a.z;
     precise vec2 b2 = b.xy - ray.shear.xy * b.z;

@@ -1,8 +1,11 @@
 // A binary tree over instances, or parts of them, whose leaves are binary trees over triangles (src/accel/bvh.rs builds both), in one loop.
 //
-// Nodes hold their children's bounds; the nearer child is visited first, the other one goes onto a stack. A ray that enters an
-// instance goes on in mesh space, with distances unchanged since its direction is not normalized again, until the stack is back at
-// the height that it had there.
+// Nodes hold their children's bounds; the nearer child is visited first, the other one goes onto a stack. Where any hit will do, it is
+// the farther child: boxes around a ray's origin come nearest of all, and what lies in them is mostly the surface that the ray leaves.
+// A ray that enters an instance goes on in mesh space, with distances unchanged since its direction is not normalized again, until the
+// stack is back at the height that it had there.
+// What outlives an iteration is kept short, and what an entry says of a hit is read when it is wanted: a software driver blends every
+// variable that only some threads write, and hardware runs more threads with fewer registers.
 // Nodes and triangles are read as texels: a software driver fetches one at once, where it would load a struct word by word and thread
 // by thread, which is four times as slow; hardware reads both through the same caches.
 // The stack cannot overflow: each inner node on the way pushes one child at most, and the builder bounds the nodes on any way by
@@ -49,15 +52,16 @@ BvhNode fetch_node(uint index) {
         uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w, uintBitsToFloat(d.xyz), d.w);
 }
 
-BvhEntry fetch_entry(uint index) {
-    int texel = int(4 * index);
-    uvec4 d = fetch_node_texel(texel + 3);
-    return BvhEntry(
-        vec4[3](
-            uintBitsToFloat(fetch_node_texel(texel)),
-            uintBitsToFloat(fetch_node_texel(texel + 1)),
-            uintBitsToFloat(fetch_node_texel(texel + 2))),
-        d.x, d.y, d.z, d.w);
+/// Of a BvhEntry.
+mat3x4 fetch_world_to_object(uint entry) {
+    int texel = int(4 * entry);
+    return mat3x4(
+        uintBitsToFloat(fetch_node_texel(texel)), uintBitsToFloat(fetch_node_texel(texel + 1)), uintBitsToFloat(fetch_node_texel(texel + 2)));
+}
+
+/// `root`, `first_triangle`, `instance` and `flags` of a BvhEntry.
+uvec4 fetch_entry_end(uint entry) {
+    return fetch_node_texel(int(4 * entry + 3));
 }
 
 vec3 fetch_corner(uint index) {
@@ -76,84 +80,113 @@ struct LocalRay {
     TriangleRay triangle;
 };
 
-LocalRay world_ray(Ray ray) {
-    return LocalRay(ray.origin, ray.direction, finite_reciprocal(ray.direction), TriangleRay(vec3(0.0), vec3(0.0), 0u));
+void enter_world(Ray ray, inout LocalRay local) {
+    local.origin = ray.origin;
+    local.direction = ray.direction;
+    local.reciprocal = finite_reciprocal(ray.direction);
 }
 
-LocalRay mesh_ray(Ray ray, vec4 world_to_object[3]) {
-    vec4 origin = vec4(ray.origin, 1.0);
-    LocalRay local;
-    local.origin = vec3(dot(world_to_object[0], origin), dot(world_to_object[1], origin), dot(world_to_object[2], origin));
-    local.direction = vec3(
-        dot(world_to_object[0].xyz, ray.direction), dot(world_to_object[1].xyz, ray.direction), dot(world_to_object[2].xyz, ray.direction));
+void enter_mesh(Ray ray, mat3x4 world_to_object, inout LocalRay local) {
+    local.origin = vec4(ray.origin, 1.0) * world_to_object;
+    local.direction = vec4(ray.direction, 0.0) * world_to_object;
     local.reciprocal = finite_reciprocal(local.direction);
-    local.triangle = triangle_ray(local.origin, local.direction);
-    return local;
+    local.triangle = triangle_ray(local.direction);
 }
 
 bool intersect_triangle(LocalRay ray, vec3 p0, vec3 p1, vec3 p2, float t_min, float t_max, out float t, out vec2 barycentrics) {
     if (INTERSECTION == 0) {
-        return intersect_watertight(ray.triangle, p0, p1, p2, t_min, t_max, t, barycentrics)
+        return intersect_watertight(ray.origin, ray.triangle, p0, p1, p2, t_min, t_max, t, barycentrics)
             && lies_ahead(ray.origin, ray.direction, p0, p1, p2);
     }
     return intersect_moeller_trumbore(ray.origin, ray.direction, p0, p1, p2, t_min, t_max, t, barycentrics);
+}
+
+/// A hit as the tree names it.
+struct BvhHit {
+    float t;
+    vec2 barycentrics;
+    /// In the arrays of nodes and of triangles; `entry` is NO_ENTRY for none.
+    uint entry;
+    uint triangle;
+};
+
+const uint NO_ENTRY = 0xffffffffu;
+
+Hit resolve(BvhHit hit) {
+    uvec4 entry = fetch_entry_end(hit.entry);
+    return Hit(hit.t, entry.z, hit.triangle - entry.y, hit.barycentrics);
+}
+
+bool passes(uint entry, uint triangle, vec2 barycentrics, uint alpha_seed) {
+    if (!EFFECT_ALPHA_MASK && !EFFECT_ALPHA_BLEND) {
+        return true;
+    }
+    uvec4 end = fetch_entry_end(entry);
+    return (end.w & INSTANCE_ALPHA) == 0 || alpha_passes(end.z, triangle - end.y, barycentrics, alpha_seed);
+}
+
+/// Shortens `hit` to the nearest triangle of a mesh's leaf.
+void intersect_leaf(uint leaf, LocalRay ray, float t_min, uint entry, uint alpha_seed, inout BvhHit hit) {
+    uint first = leaf & BVH_FIRST_MASK;
+    uint last = first + ((leaf >> BVH_COUNT_SHIFT) & 3u);
+    for (uint i = first; i <= last; i++) {
+        float t;
+        vec2 barycentrics;
+        bool hits = intersect_triangle(ray, fetch_corner(3 * i), fetch_corner(3 * i + 1), fetch_corner(3 * i + 2), t_min, hit.t, t, barycentrics);
+        if (hits && passes(entry, i, barycentrics, alpha_seed)) {
+            hit = BvhHit(t, barycentrics, entry, i);
+        }
+    }
 }
 
 bool accel_trace(Ray ray, bool any_hit, uint alpha_seed, out Hit hit) {
     uint stack[BVH_TOP_DEPTH + BVH_MESH_DEPTH];
     uint height = 0;
     uint base = IN_TOP_LEVEL;
-    LocalRay local = world_ray(ray);
-    uint instance = 0, first_triangle = 0, flags = 0;
+    LocalRay local;
+    enter_world(ray, local);
+    uint entry = NO_ENTRY;
+    BvhHit nearest = BvhHit(ray.t_max, vec2(0.0), NO_ENTRY, 0);
     uint current = BvhRootBuffer(frame.accel).root.root;
-    bool found = false;
-    hit.t = ray.t_max;
 
     while (current != BVH_EMPTY) {
+        bool done = false;
         if ((current & BVH_LEAF) == 0) {
             BvhNode node = fetch_node(current);
-            float t0 = intersect_box(local.origin, local.reciprocal, ray.t_min, hit.t, node.min0, node.max0);
-            float t1 = intersect_box(local.origin, local.reciprocal, ray.t_min, hit.t, node.min1, node.max1);
-            bool ordered = t0 <= t1;
-            if (max(t0, t1) < MISSED) {
+            float t0 = intersect_box(local.origin, local.reciprocal, ray.t_min, nearest.t, node.min0, node.max0);
+            float t1 = intersect_box(local.origin, local.reciprocal, ray.t_min, nearest.t, node.min1, node.max1);
+            bool both = max(t0, t1) < MISSED;
+            bool ordered = both && any_hit ? t0 > t1 : t0 <= t1;
+            if (both) {
                 stack[height++] = ordered ? node.child1 : node.child0;
             }
-            if (min(t0, t1) < MISSED) {
-                current = ordered ? node.child0 : node.child1;
-                continue;
-            }
+            current = ordered ? node.child0 : node.child1;
+            done = min(t0, t1) >= MISSED;
         } else if (base == IN_TOP_LEVEL) {
-            BvhEntry entry = fetch_entry(current & ~BVH_LEAF);
-            local = mesh_ray(ray, entry.world_to_object);
-            instance = entry.instance;
-            first_triangle = entry.first_triangle;
-            flags = entry.flags;
-            current = entry.root;
+            entry = current & ~BVH_LEAF;
+            enter_mesh(ray, fetch_world_to_object(entry), local);
+            current = fetch_entry_end(entry).x;
             base = height;
-            continue;
         } else {
-            uint first = current & BVH_FIRST_MASK;
-            uint end = first + ((current >> BVH_COUNT_SHIFT) & 3u);
-            for (uint i = first; i <= end; i++) {
-                float t;
-                vec2 barycentrics;
-                bool hits = intersect_triangle(local, fetch_corner(3 * i), fetch_corner(3 * i + 1), fetch_corner(3 * i + 2), ray.t_min, hit.t, t, barycentrics);
-                if (hits && ((flags & INSTANCE_ALPHA) == 0 || alpha_passes(instance, i - first_triangle, barycentrics, alpha_seed))) {
-                    hit = Hit(t, instance, i - first_triangle, barycentrics);
-                    found = true;
-                }
-            }
-            if (found && any_hit) {
+            intersect_leaf(current, local, ray.t_min, entry, alpha_seed, nearest);
+            if (any_hit && nearest.entry != NO_ENTRY) {
                 break;
             }
+            done = true;
         }
-        if (height == base) {
-            base = IN_TOP_LEVEL;
-            local = world_ray(ray);
+        if (done) {
+            if (height == base) {
+                base = IN_TOP_LEVEL;
+                enter_world(ray, local);
+            }
+            current = height == 0 ? BVH_EMPTY : stack[--height];
         }
-        current = height == 0 ? BVH_EMPTY : stack[--height];
     }
-    return found;
+    if (nearest.entry == NO_ENTRY) {
+        return false;
+    }
+    hit = resolve(nearest);
+    return true;
 }
 
 #endif
