@@ -6,6 +6,7 @@
 // sspsf.angle, and with the squared distance in the world, to 0 where half a window would reach seen from the vertex: pixels that see one
 // surface from the front all count, those behind an edge do not, and no weight needs an exponential.
 #include "filter/footprint.glsl"
+#include "filter/similar.glsl"
 #include "lib/packing.glsl"
 #include "lib/storage.glsl"
 
@@ -53,9 +54,9 @@ void main() {
             vec4 position = imageLoad(filter_position, other);
             vec3 offset = (position.xyz - centre.xyz) / reach;
             float near = 1.0 - dot(offset, offset);
-            float aligned = (dot(normal_at(other), normal) - least_cosine) / (1.0 - least_cosine);
+            float aligned = alignment(normal_at(other), normal, least_cosine);
             vec4 value = sample_at(other);
-            float weight = position.w > 0.0 ? max(near, 0.0) * clamp(aligned, 0.0, 1.0) * value.w : 0.0;
+            float weight = position.w > 0.0 ? max(near, 0.0) * aligned * value.w : 0.0;
             sum += weight * vec4(value.rgb, 1.0);
         }
     }

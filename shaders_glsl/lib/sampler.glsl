@@ -32,6 +32,17 @@ Sampler sampler_begin(uvec2 pixel, uint sample_index, uint seed) {
     return Sampler(pcg3d(uvec3(pixel, seed)).x, sample_index, 0u);
 }
 
+const uint SCRAMBLE_TILE = 1u;
+
+/// Pixels of a tile of 16x16 take turns in one sequence, in Morton order: the samples of each aligned square of 2^k pixels a side, and of all
+/// its halves, are a net of the sequence, for nested scrambling keeps aligned powers of two together.
+Sampler sampler_of_tile(uvec2 pixel, uint sample_index, uint seed) {
+    uvec2 bits = pixel & 15u;
+    bits = (bits | bits << 2) & 0x33u;
+    bits = (bits | bits << 1) & 0x55u;
+    return sampler_begin(pixel >> 4, sample_index * 256u + (bits.x | bits.y << 1), seed);
+}
+
 /// Owen scrambling of the reversed bits: bit i is flipped by a hash of the bits below it. Laine and Karras 2011, constants of Vegdahl.
 uint laine_karras_permutation(uint bits, uint seed) {
     bits ^= bits * 0x3d20adeau;

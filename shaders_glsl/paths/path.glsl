@@ -70,10 +70,11 @@ struct Pending {
 
 Path path_begin(uvec2 pixel, uint sample_index) {
     Path path;
-    path.numbers = sampler_begin(pixel, sample_index, frame.seed);
 #ifdef SHARED_JITTER
+    path.numbers = SCRAMBLE == SCRAMBLE_TILE ? sampler_of_tile(pixel, sample_index, frame.seed) : sampler_begin(pixel, sample_index, frame.seed);
     vec2 offset = frame.jitter;
 #else
+    path.numbers = sampler_begin(pixel, sample_index, frame.seed);
     vec2 offset = sample_2d(path.numbers) - 0.5;
 #endif
     path.ray = primary_ray(pixel, offset);

@@ -35,6 +35,9 @@ layout(constant_id = 106) const uint ENERGY_COMPENSATION = 1;
 //@ textures.level cone cone|zero
 /// Texture level of detail: by ray cones, which follow the footprint of a path, or always the finest, which only many samples filter.
 layout(constant_id = 107) const uint TEXTURE_LEVEL = 0;
+//@ paths.scramble pixel pixel|tile
+/// What has a sample sequence of its own, where pixels take one sample a frame: each pixel, or each tile of 16x16, whose pixels share out one sequence. By tile, what a filter averages over neighbours converges like a sequence, not like chance; the same cost.
+layout(constant_id = 108) const uint SCRAMBLE = 0;
 //@ paths.albedo apart apart|divided
 /// Albedo at the filter vertex: kept apart and multiplied in after filters, or multiplied in while tracing, divided out for filters (by 0.001 at least), multiplied again. Divided loses channels of zero albedo and precision (Meijer, section 4.1).
 layout(constant_id = 120) const uint ALBEDO = 0;
@@ -44,6 +47,9 @@ layout(constant_id = 121) const uint SUM = 0;
 //@ frame.precision fp32 fp32|fp16
 /// Images and histories, other than positions, motion and identities. fp16 halves their bytes; rounds to 11 bits, and clamps at 65504.
 layout(constant_id = 122) const uint PRECISION = 0;
+//@ frame.jitter off off|on
+/// Primary rays of techniques for real time go through the pixel's centre, or through a point of it that changes with every frame, the same in all pixels. On is antialiasing where frames add up, and trembling edges where each stands alone. No cost.
+layout(constant_id = 123) const uint JITTER = 0;
 //@ hpsf.sums fixed fixed|float
 /// Sums of cells: fixed point of 64 bits, the same picture in every run, or float atomics, where the device offers them; fewer bytes.
 layout(constant_id = 130) const uint HPSF_SUMS = 0;
@@ -65,6 +71,10 @@ layout(constant_id = 135) const uint HPSF_NEIGHBOURS = 0;
 //@ hpsf.seed on off|on
 /// New cells begin with what cells of the neighbouring levels know, when the camera has moved. Off: they begin with nothing.
 layout(constant_id = 136) const uint HPSF_SEED = 1;
+
+//@ hpsf.temporal off off|on
+/// Pictures of earlier frames, moved by motion vectors, are averaged with this one: antialiasing with frame.jitter, less noise in what is not filtered; lag. Costs a primary ray and a pass.
+layout(constant_id = 137) const uint HPSF_TEMPORAL = 0;
 
 struct Parameters {
     //@ paths.max_bounces 8 0..64 bounces
@@ -137,6 +147,24 @@ struct Parameters {
     //@ hpsf.largest 65536 1..1000000000 W/(sr*m^2)
     /// Largest radiance of a sample that enters a cell; it takes a share of 2^-40 as the unit of fixed point.
     float hpsf_largest;
+    //@ hpsf.smooth 0 0..4 passes
+    /// Passes of an edge-avoiding filter over the screen, each twice as wide as the one before, for what the jitter of cells leaves as noise. More blur shadows; 25 taps each.
+    uint hpsf_smooth;
+    //@ hpsf.smooth_reach 1 0.01..16 pixels
+    /// How far from a vertex's tangent plane that filter takes others for similar, as large as a pixel appears there.
+    float hpsf_smooth_reach;
+    //@ hpsf.smooth_angle 30 1..180 degrees
+    /// Largest angle between the normals of vertices that it takes for similar.
+    float hpsf_smooth_angle;
+    //@ hpsf.smooth_few 256 1..100000 samples
+    /// A pixel whose cells know more samples than this is smoothed so many times less. Fewer stay sharper over frames, and noisier.
+    uint hpsf_smooth_few;
+    //@ temporal.frames 64 1..1000
+    /// Frames that count at most where hpsf.temporal is on. Fewer follow changes sooner, and leave more noise.
+    float temporal_frames;
+    //@ temporal.clamp 0 0..100
+    /// History is kept within so many standard deviations of what surrounds the pixel now; 0: not. Less is less lag, and loses light that few samples find.
+    float temporal_clamp;
 };
 
 #endif

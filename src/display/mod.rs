@@ -4,6 +4,7 @@ pub mod accumulate;
 pub mod composite;
 pub mod exr_file;
 pub mod image;
+pub mod temporal;
 pub mod tonemap;
 
 pub use exr_file::ExrContents;

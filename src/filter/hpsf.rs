@@ -38,6 +38,13 @@ pub struct Options {
     pub statistics: bool,
 }
 
+/// The mean over a cell, and the samples that it is over.
+#[derive(Debug, Clone, Copy)]
+pub struct Filtered {
+    pub diffuse: ImageHandle,
+    pub samples: ImageHandle,
+}
+
 struct Table {
     capacity: u32,
     fingerprints: History<BufferHandle>,
@@ -49,7 +56,7 @@ struct Table {
     insertions: u64,
 }
 
-pub fn add(frame: &mut FrameBuilder, terms: &Terms, options: Options) -> Result<ImageHandle, GpuError> {
+pub fn add(frame: &mut FrameBuilder, terms: &Terms, options: Options) -> Result<Filtered, GpuError> {
     let table = Table::new(frame, options)?;
     if options.swapped {
         frame.fill("hpsf clear", table.fingerprints.current, 0);
@@ -100,7 +107,7 @@ impl Table {
         pass.reads("seeds", self.seeds).updates("cells", self.cells.current).add()
     }
 
-    fn resolve(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<ImageHandle, GpuError> {
+    fn resolve(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<Filtered, GpuError> {
         let diffuse = frame.color_image("diffuse")?;
         let samples = frame.image("hpsf_samples", vk::Format::R32_UINT)?;
         let touched = u64::from(frame.pixels());
@@ -108,7 +115,7 @@ impl Table {
         let pass = pass.reads("fingerprints", self.fingerprints.current).touching(touched * FINGERPRINT);
         let pass = pass.reads("cells", self.cells.current).touching(touched * CELL);
         pass.writes("diffuse", diffuse).writes("hpsf_samples", samples).add()?;
-        Ok(diffuse)
+        Ok(Filtered { diffuse, samples })
     }
 
     fn statistics(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {

@@ -1,4 +1,5 @@
 //! Filters of the radiance behind the filter vertex (paths::megakernel::Terms), each in a file or folder of its name.
 
 pub mod hpsf;
+pub mod smooth;
 pub mod sspsf;

@@ -98,11 +98,19 @@ impl<'a> FrameBuilder<'a> {
     /// An image of radiance, or of anything else that the frame's precision is enough for, declared `COLOR_FORMAT` in shaders. What a
     /// kernel stores there must go through lib/storage.glsl.
     pub fn color_image(&mut self, name: &'static str) -> Result<ImageHandle, GpuError> {
-        let format = match self.precision {
+        self.image(name, self.color_format())
+    }
+
+    /// A colour image and that of the frame before. Its name is that of its AOV, which shows the current one.
+    pub fn color_history(&mut self, name: &'static str) -> Result<History<ImageHandle>, GpuError> {
+        self.image_history(name, self.color_format())
+    }
+
+    fn color_format(&self) -> vk::Format {
+        match self.precision {
             Precision::Fp32 => vk::Format::R32G32B32A32_SFLOAT,
             Precision::Fp16 => vk::Format::R16G16B16A16_SFLOAT,
-        };
-        self.image(name, format)
+        }
     }
 
     /// The next pass: a kernel by its stem below shaders_glsl/, over every pixel.

@@ -1,8 +1,9 @@
 //! `hpsf`: the radiance behind the filter vertex, averaged over cells of the world that a hash table keeps.
 
 use super::{PassOptions, Technique};
-use crate::display::composite;
+use crate::display::{composite, temporal};
 use crate::filter::hpsf::{self, Options};
+use crate::filter::smooth;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
 use crate::paths::{gbuffer, megakernel};
@@ -17,16 +18,21 @@ pub(super) const TECHNIQUE: Technique = Technique {
     passes,
 };
 
-fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
-    if options.wants(&gbuffer::OUTPUTS) {
-        gbuffer::add(frame)?;
-    }
+pub(super) fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
+    let over_frames = options.parameters.number("hpsf.temporal") == 1.0;
+    let wanted = over_frames || options.wants(&gbuffer::OUTPUTS);
+    let gbuffer = wanted.then(|| gbuffer::add(frame)).transpose()?;
     let terms = megakernel::add_with_terms(frame)?;
-    let diffuse = hpsf::add(frame, &terms, table(options))?;
-    composite::add_filtered(frame, &terms, diffuse)
+    let filtered = hpsf::add(frame, &terms, table(options))?;
+    let diffuse = smooth::add(frame, &terms.vertex, filtered, options.parameters.number("hpsf.smooth") as usize)?;
+    let radiance = composite::add_filtered(frame, &terms, diffuse)?;
+    match gbuffer {
+        Some(gbuffer) if over_frames => temporal::add(frame, &gbuffer, radiance),
+        _ => Ok(radiance),
+    }
 }
 
-pub(super) fn table(options: PassOptions) -> Options {
+fn table(options: PassOptions) -> Options {
     let number = |key| options.parameters.number(key);
     Options {
         cells_per_pixel: number("hpsf.cells"),

@@ -6,6 +6,7 @@ mod governor;
 mod prepared;
 mod reference;
 mod hpsf;
+mod hpsf_plus;
 mod renderer;
 mod settings;
 mod sspsf;
@@ -65,7 +66,8 @@ impl PassOptions<'_> {
     }
 }
 
-pub static REGISTRY: [Technique; 4] = [reference::TECHNIQUE, unfiltered::TECHNIQUE, sspsf::TECHNIQUE, hpsf::TECHNIQUE];
+pub static REGISTRY: [Technique; 5] =
+    [reference::TECHNIQUE, unfiltered::TECHNIQUE, sspsf::TECHNIQUE, hpsf::TECHNIQUE, hpsf_plus::TECHNIQUE];
 
 /// The technique of this name.
 pub fn find(name: &str) -> Option<&'static Technique> {

@@ -211,6 +211,7 @@ impl Renderer {
             extent: self.settings.extent,
             seed: self.settings.seed,
             first_sample: self.first_sample,
+            jitter: if self.settings.parameters.number("frame.jitter") == 1.0 { sub_pixel(self.frame) } else { [0.0; 2] },
             samples: self.samples as u32,
             more_samples: self.samples.fract() as f32,
             log2_origin_step,
@@ -229,6 +230,7 @@ impl Renderer {
         let [width, height] = image.info().extent;
         let pixels = match image.info().format {
             vk::Format::R32_UINT => self.gpu.download_image::<u32>(image)?.into_iter().map(|v| [v as f32; 3]).collect(),
+            vk::Format::R32_SFLOAT => self.gpu.download_image::<f32>(image)?.into_iter().map(|v| [v; 3]).collect(),
             vk::Format::R16G16B16A16_SFLOAT => {
                 let texels: Vec<[half::f16; 4]> = self.gpu.download_image(image)?;
                 texels.into_iter().map(|[r, g, b, _]| [r, g, b].map(half::f16::to_f32)).collect()
@@ -253,6 +255,14 @@ impl Renderer {
     }
 }
 
+/// Offset of a frame's primary rays from the pixel's centre, -1/2..1/2: Sobol's sequence (lib/sampler.glsl), its fractions read as signed, so
+/// that it begins at the centre, the best place for one frame alone, and 2^k frames fill the pixel in as many strata.
+fn sub_pixel(frame: u32) -> [f32; 2] {
+    let pascal = [(1, 0x5555_5555), (2, 0x3333_3333), (4, 0x0f0f_0f0f), (8, 0x00ff_00ff), (16, 0xffff)];
+    let second = pascal.into_iter().fold(frame, |x, (shift, mask)| x ^ ((x >> shift) & mask));
+    [frame, second].map(|index| index.reverse_bits() as i32 as f32 / 4_294_967_296.0)
+}
+
 fn check_outputs(settings: &Settings, graph: &FrameGraph) -> Result<(), RenderError> {
     let Some(name) = settings.outputs.iter().find(|name| graph.image(name).is_none()) else { return Ok(()) };
     let extra = gbuffer::OUTPUTS.iter().chain(settings.technique.extra_outputs).copied();
@@ -260,4 +270,20 @@ fn check_outputs(settings: &Settings, graph: &FrameGraph) -> Result<(), RenderEr
     known.sort_unstable();
     known.dedup();
     Err(RenderError::UnknownOutput { technique: settings.technique.name, name: name.clone(), known: known.join(", ") })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sub_pixel_offsets_begin_at_the_centre_and_fill_the_pixel_evenly() {
+        assert_eq!(sub_pixel(0), [0.0; 2]);
+        let mut parts = [0; 16];
+        for [x, y] in (0..160).map(sub_pixel) {
+            assert!((-0.5..0.5).contains(&x) && (-0.5..0.5).contains(&y));
+            parts[(4.0 * (x + 0.5)) as usize + 4 * (4.0 * (y + 0.5)) as usize] += 1;
+        }
+        assert_eq!(parts, [10; 16]);
+    }
 }

@@ -40,7 +40,7 @@ fn a_frame_allocates_nothing_on_host_and_device() {
     let gpu = common::gpu();
     let structures = pathspace::accel::REGISTRY.iter().filter(|entry| (entry.available)(gpu.capabilities()).is_ok());
     for (structure, technique) in structures.flat_map(|structure| REGISTRY.iter().map(move |technique| (structure.name, technique))) {
-        let settings = Settings { technique, trace: structure.to_owned(), ..settings(16, 9) };
+        let settings = Settings { technique, parameters: technique.parameters(), trace: structure.to_owned(), ..settings(16, 9) };
         let mut renderer = Renderer::new(&gpu, builtin("hall:10000"), settings).unwrap();
         (0..WARM_UP).for_each(|_| renderer.render_frame().unwrap());
         let before = (ALLOCATIONS.load(Ordering::Relaxed), gpu.allocated_bytes());

@@ -72,13 +72,19 @@ pub fn filters() -> impl Iterator<Item = &'static str> {
     technique::REGISTRY.iter().filter(|technique| !technique.accumulates && technique.name != "unfiltered").map(|technique| technique.name)
 }
 
-/// A technique after some frames.
+/// A technique after some frames; what `settings` leaves at its default has the technique's.
 pub fn render_frames(gpu: &Gpu, scene: &Scene, settings: &Settings, technique: &str, frames: u32) -> Renderer {
-    let settings = Settings { technique: technique::find(technique).expect("it is registered"), ..settings.clone() };
-    let mut renderer = Renderer::new(gpu, scene.clone(), settings).unwrap();
+    let technique = technique::find(technique).expect("it is registered");
+    let parameters = settings.parameters.changed_from(&Parameters::default(), technique.parameters());
+    let mut renderer = Renderer::new(gpu, scene.clone(), Settings { technique, parameters, ..settings.clone() }).unwrap();
     (0..frames).for_each(|_| renderer.render_frame().unwrap());
     renderer.finish().unwrap();
     renderer
+}
+
+/// What the last pass of a filter makes of the radiance behind the filter vertices.
+pub fn filtered(renderer: &Renderer) -> Image {
+    renderer.output("smoothed").unwrap().unwrap_or_else(|| output(renderer, "diffuse"))
 }
 
 pub fn output(renderer: &Renderer, name: &str) -> Image {

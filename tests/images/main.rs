@@ -11,6 +11,7 @@ mod references;
 mod shared_scenes;
 mod switches;
 mod surfaces;
+mod temporal;
 mod terms;
 mod textures;
 mod worlds;

@@ -1,7 +1,7 @@
 //! Motion vectors of the g-buffer: from where a point is to where it was, in pixels, whatever moved and wherever the world is.
 
 use crate::common;
-use crate::common::render::{builtin, settings, wall};
+use crate::common::render::{builtin, set, settings, wall};
 use glam::{DQuat, DVec3};
 use pathspace::scene::animation::{Animation, Channel, Interpolation, Keys};
 use pathspace::scene::{Camera, Environment, Instance, Local, Material, Node, Projection, Scene};
@@ -44,7 +44,9 @@ fn motion(scene: Scene, frame: u32) -> Vec<[f32; 3]> {
 
 fn motion_in([width, height]: [u32; 2], scene: Scene, frame: u32) -> Vec<[f32; 3]> {
     let gpu = common::gpu();
-    let unfiltered = Settings { technique: technique::find("unfiltered").unwrap(), ..settings(width, height) };
+    let mut unfiltered = Settings { technique: technique::find("unfiltered").unwrap(), ..settings(width, height) };
+    // Motion is that of points, and knows nothing of where in the pixel they were seen.
+    set(&mut unfiltered, &[("frame.jitter", "on")]);
     let mut renderer = Renderer::new(&gpu, scene, unfiltered).unwrap();
     (0..=frame).for_each(|_| renderer.render_frame().unwrap());
     renderer.output("motion").unwrap().unwrap().pixels

@@ -2,7 +2,7 @@
 
 use crate::common;
 use crate::common::floor::{floor, from_above};
-use crate::common::render::{builtin, filters, mean, output, render_frames, set, settings};
+use crate::common::render::{builtin, filtered, filters, mean, output, render_frames, set, settings};
 use pathspace::scene::{Environment, Scene};
 use pathspace::technique::Settings;
 
@@ -20,7 +20,7 @@ fn under_a_constant_sky(base_color: [f32; 4]) -> (Scene, Settings) {
 }
 
 /// Every switch of a filter that changes what it adds up.
-const SWITCHES: [&[(&str, &str)]; 8] = [
+const SWITCHES: [&[(&str, &str)]; 9] = [
     &[],
     &[("hpsf.sums", "float"), ("hpsf.jitter_by", "sampler")],
     &[("hpsf.table", "swapped"), ("hpsf.levels", "3")],
@@ -29,6 +29,7 @@ const SWITCHES: [&[(&str, &str)]; 8] = [
     &[("hpsf.neighbours", "on"), ("hpsf.few", "1000"), ("hpsf.width", "4")],
     &[("hpsf.normals", "fingerprint"), ("hpsf.normal_bits", "8"), ("hpsf.normal_jitter", "1")],
     &[("sspsf.window", "3")],
+    &[("hpsf.smooth", "4"), ("hpsf.smooth_few", "100000"), ("paths.scramble", "tile"), ("frame.jitter", "on")],
 ];
 
 #[test]
@@ -39,7 +40,7 @@ fn constant_radiance_comes_out_as_it_went_in() {
         for switches in SWITCHES {
             let mut settings = plain.clone();
             set(&mut settings, switches);
-            for pixel in output(&render_frames(&gpu, &scene, &settings, filter, 3), "diffuse").pixels {
+            for pixel in filtered(&render_frames(&gpu, &scene, &settings, filter, 3)).pixels {
                 let near = (0..3).all(|c| (pixel[c] / SKY[c] - 1.0).abs() < 1e-5);
                 assert!(near, "{filter} {switches:?}: {pixel:?}");
             }
@@ -53,7 +54,7 @@ fn an_albedo_without_green_loses_no_green() {
     let (scene, settings) = under_a_constant_sky([0.5, 0.0, 0.5, 1.0]);
     for filter in filters() {
         let renderer = render_frames(&gpu, &scene, &settings, filter, 1);
-        assert!(output(&renderer, "diffuse").pixels.iter().all(|pixel| (pixel[1] / SKY[1] - 1.0).abs() < 1e-5), "{filter}");
+        assert!(filtered(&renderer).pixels.iter().all(|pixel| (pixel[1] / SKY[1] - 1.0).abs() < 1e-5), "{filter}");
         assert!(renderer.picture().unwrap().pixels.iter().all(|pixel| pixel[1] < 0.05 * pixel[2]), "{filter}");
     }
 }
@@ -99,7 +100,7 @@ fn a_sample_that_is_not_finite_stays_out() {
         let renderer = render_frames(&gpu, &scene, &settings, filter, 2);
         let lost = output(&renderer, "diffuse_direct").pixels.iter().filter(|pixel| **pixel == [0.0; 3]).count();
         assert!(lost > 50, "{lost} paths meet the lamp");
-        for pixel in output(&renderer, "diffuse").pixels {
+        for pixel in filtered(&renderer).pixels {
             assert!((0..3).all(|c| (pixel[c] / SKY[c] - 1.0).abs() < 1e-5), "{filter}: {pixel:?}");
         }
     }

@@ -64,13 +64,13 @@ fn a_full_table_leaves_pixels_unfiltered_and_darkens_nothing() {
 fn a_restart_forgets_every_frame_before_it() {
     let gpu = common::gpu();
     let scene = builtin("cornell");
-    for table in ["persistent", "swapped"] {
+    for (technique, table) in [("hpsf", "persistent"), ("hpsf", "swapped"), ("hpsf+", "persistent")] {
         let settings = with(&[("hpsf.table", table), ("hpsf.cells", "4")]);
-        let mut used = render_frames(&gpu, &scene, &settings, "hpsf", 3);
+        let mut used = render_frames(&gpu, &scene, &settings, technique, 3);
         used.restart(7, 0).unwrap();
         used.render_frame().unwrap();
-        let fresh = render_frames(&gpu, &scene, &Settings { seed: 7, ..settings }, "hpsf", 1);
-        assert_eq!(bits(&used.picture().unwrap()), bits(&fresh.picture().unwrap()), "{table}");
+        let fresh = render_frames(&gpu, &scene, &Settings { seed: 7, ..settings }, technique, 1);
+        assert_eq!(bits(&used.picture().unwrap()), bits(&fresh.picture().unwrap()), "{technique}, {table}");
     }
 }
 

@@ -226,3 +226,30 @@ fn pairs_of_dimensions_are_uncorrelated() {
         }
     }
 }
+
+const TILE: &str = r#"
+#include "lib/sampler.glsl"
+struct In { uint pixel[2]; };
+struct Out { vec2 point; };
+void kernel(uint i) {
+    Sampler numbers = sampler_of_tile(uvec2(inputs[i].pixel[0], inputs[i].pixel[1]), 5u, 3u);
+    numbers.dimension = 6u;
+    outputs[i] = Out(sample_2d(numbers));
+}
+"#;
+
+/// One sample each of 16x16 pixels is a (0, 8, 2)-net, of 8x8 and 4x4 of them smaller ones, where chance fills two thirds of the intervals.
+#[test]
+fn pixels_of_a_tile_share_out_a_net() {
+    let pixels: Vec<[u32; 2]> = (0..256).map(|i| [48 + i % 16, 16 + i / 16]).collect();
+    let points: Vec<[f32; 2]> = common::run_kernel(&common::gpu(), TILE, &pixels);
+    for (side, log2) in [(16, 8), (8, 6), (4, 4)] {
+        let within = pixels.iter().zip(&points).filter(|([x, y], _)| x - 48 < side && y - 16 < side);
+        let points: Vec<[f32; 2]> = within.map(|(_, point)| *point).collect();
+        for columns in 0..=log2 {
+            let interval = |[x, y]: [f32; 2]| [(x * f32::exp2(columns as f32)) as u32, (y * f32::exp2((log2 - columns) as f32)) as u32];
+            let filled: std::collections::HashSet<[u32; 2]> = points.iter().map(|&point| interval(point)).collect();
+            assert_eq!(filled.len(), 1 << log2, "{side}x{side} pixels, 2^{columns} columns");
+        }
+    }
+}

@@ -1,0 +1,114 @@
+// Pictures of earlier frames, moved to where their points are now, are averaged with this one: what the frames' sub-pixel offsets
+// (frame.jitter) make of edges becomes their antialiasing, and noise that no filter has seen falls. Karis, "High Quality Temporal
+// Supersampling", SIGGRAPH 2014 courses; Salvi, "An Excursion in Temporal Supersampling", GDC 2016 (variance clipping).
+//
+// Frame k of the N that a point has been seen in weighs 2k / (N (N + 1)): later ones are better where cells keep what they know, and an even
+// mean would carry the first frames' error twice as long. Up to temporal.frames a still picture converges; then it is a moving average.
+//
+// Deviations and why: history counts where its depth is in the range of the depths around the pixel now, not where it is that of the
+// pixel's one sample: at an edge the offset decides which surface the sample meets.
+#include "lib/storage.glsl"
+#include "shared/bindings.glsl"
+
+layout(local_size_x = 8, local_size_y = 4) in;
+
+layout(set = 1, binding = 0, COLOR_FORMAT) readonly uniform image2D radiance;
+/// Pixels, to where the point was; z: change of its depth, metres; w: 1 where it was in front of the camera.
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
+/// w: distance, negative for a miss.
+layout(set = 1, binding = 2, rgba32f) readonly uniform image2D position;
+/// rgb: mean; w: frames that it is over.
+layout(set = 1, binding = 3, COLOR_FORMAT) readonly uniform image2D known;
+/// Along the view, metres.
+layout(set = 1, binding = 4, r32f) readonly uniform image2D known_depth;
+layout(set = 1, binding = 5, COLOR_FORMAT) writeonly uniform image2D temporal;
+layout(set = 1, binding = 6, r32f) writeonly uniform image2D temporal_depth;
+
+/// What was not hit is as far as motion vectors take it to be (paths/gbuffer.comp).
+const float MISS = 1e6;
+/// Of the depth, by which two frames may disagree about a surface.
+const float TOLERANCE = 0.05;
+/// Pixels; motion below it is rounding, and would blur a still picture.
+const float STILL = 1e-2;
+
+/// What is seen around a pixel in this frame.
+struct Surroundings {
+    vec3 mean;
+    vec3 deviation;
+    float nearest;
+    float farthest;
+};
+
+float depth_at(ivec2 pixel) {
+    vec4 point = imageLoad(position, pixel);
+    return point.w < 0.0 ? MISS : dot(point.xyz - frame.camera.position, frame.camera.forward);
+}
+
+Surroundings look_around(ivec2 pixel) {
+    ivec2 low = max(pixel - 1, 0);
+    ivec2 high = min(pixel + 1, ivec2(frame.extent) - 1);
+    vec3 sum = vec3(0.0);
+    vec3 squares = vec3(0.0);
+    Surroundings around = Surroundings(vec3(0.0), vec3(0.0), MISS, -MISS);
+    for (int y = low.y; y <= high.y; y++) {
+        for (int x = low.x; x <= high.x; x++) {
+            vec3 value = imageLoad(radiance, ivec2(x, y)).rgb;
+            float depth = depth_at(ivec2(x, y));
+            sum += value;
+            squares += value * value;
+            around.nearest = min(around.nearest, depth);
+            around.farthest = max(around.farthest, depth);
+        }
+    }
+    ivec2 size = high - low + 1;
+    float count = float(size.x * size.y);
+    around.mean = sum / count;
+    around.deviation = sqrt(max(squares / count - around.mean * around.mean, vec3(0.0)));
+    return around;
+}
+
+/// Mean (rgb) and frames (w) of what earlier frames know of the point: bilinear, of the texels whose depth fits; w is 0 where none does.
+vec4 history_at(vec2 place, float nearest, float farthest) {
+    vec2 corner = floor(place);
+    vec2 part = place - corner;
+    vec4 sum = vec4(0.0);
+    float weights = 0.0;
+    for (int i = 0; i < 4; i++) {
+        ivec2 tap = ivec2(i & 1, i >> 1);
+        ivec2 texel = ivec2(corner) + tap;
+        if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(frame.extent)))) {
+            continue;
+        }
+        float depth = imageLoad(known_depth, texel).x;
+        vec4 value = imageLoad(known, texel);
+        vec2 share = mix(1.0 - part, part, equal(tap, ivec2(1)));
+        bool fits = depth > nearest * (1.0 - TOLERANCE) && depth < farthest * (1.0 + TOLERANCE) && value.w > 0.0;
+        float weight = fits ? share.x * share.y : 0.0;
+        sum += weight * value;
+        weights += weight;
+    }
+    return weights > 0.0 ? sum / weights : vec4(0.0);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
+        return;
+    }
+    vec3 now = imageLoad(radiance, pixel).rgb;
+    vec4 moved = imageLoad(motion, pixel);
+    Surroundings around = look_around(pixel);
+    vec2 step = dot(moved.xy, moved.xy) > STILL * STILL ? moved.xy : vec2(0.0);
+    vec4 before = vec4(0.0);
+    if (moved.w > 0.0) {
+        before = history_at(vec2(pixel) + step, around.nearest + moved.z, around.farthest + moved.z);
+    }
+    if (parameters.temporal_clamp > 0.0) {
+        vec3 allowed = parameters.temporal_clamp * around.deviation;
+        before.rgb = clamp(before.rgb, around.mean - allowed, around.mean + allowed);
+    }
+    float count = min(before.w, parameters.temporal_frames - 1.0) + 1.0;
+    vec3 mean = before.w > 0.0 ? mix(before.rgb, now, 2.0 / (count + 1.0)) : now;
+    imageStore(temporal, pixel, storable(vec4(mean, before.w > 0.0 ? count : 1.0)));
+    imageStore(temporal_depth, pixel, vec4(depth_at(pixel)));
+}
