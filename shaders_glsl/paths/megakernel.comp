@@ -1,6 +1,6 @@
-// Path tracing to radiance: paths/path.glsl, the terms summed up.
+// Path tracing to radiance: paths/megakernel.glsl, the terms summed up.
 #include "lib/storage.glsl"
-#include "paths/path.glsl"
+#include "paths/megakernel.glsl"
 
 layout(local_size_x = 32) in;
 

@@ -1,7 +1,7 @@
 // Path tracing, one path per pixel through the g-buffer's point, the terms apart: paths/terms.glsl.
 #define SEPARATE_TERMS
 #define SHARED_JITTER
-#include "paths/path.glsl"
+#include "paths/megakernel.glsl"
 
 layout(local_size_x = 32) in;
 

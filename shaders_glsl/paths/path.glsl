@@ -1,6 +1,5 @@
-// Unidirectional path tracing, whole paths in one kernel. Each turn of the loop traces a ray through the one traversal call site,
-// for some threads a shadow ray, for others a scattered one. A thread has several pixels and starts the next path when
-// one has ended, so that no thread waits for its neighbours' longer paths, and every turn has a ray to trace.
+// Unidirectional path tracing: a path and its steps from ray to ray. Kernels trace the rays: paths/megakernel.glsl whole paths in one,
+// paths/wavefront/ each step of all paths at once.
 //
 // Kajiya, "The Rendering Equation", 1986; next event estimation and the power heuristic: Veach, "Robust Monte Carlo Methods for Light
 // Transport Simulation", 1997, sections 9.2.4 and 10.3.4. Terms at the filter vertex: paths/terms.glsl (Meijer, algorithm 1).
@@ -12,7 +11,7 @@
 #ifndef PATHS_PATH_GLSL
 #define PATHS_PATH_GLSL
 
-#include "accel/trace.glsl"
+#include "accel/ray.glsl"
 #include "lib/bsdf.glsl"
 #include "lib/lights.glsl"
 #include "lib/ray_cone.glsl"
@@ -30,9 +29,6 @@ const uint EXTRA_PAIRS = 1u + PAIRS_PER_VERTEX * 66u;
 const uint SELECTION_PAIRS = EXTRA_PAIRS + 2u * 16u;
 
 const uint NO_VERTEX = ~0u;
-
-/// Tiles of 8x4 pixels that a workgroup of 32 threads works off.
-layout(constant_id = 201) const uint TILES = 1;
 
 struct Path {
     /// The scattered ray: being traced, or to be traced after this vertex's shadow rays.
@@ -233,120 +229,44 @@ bool meet_sphere_light(Path path, bool hit_something, float t, inout Terms terms
     return true;
 }
 
-/// Pixel of a thread of 32 in the group's tile `turn`; tiles of 8x4 pixels go along the rows of the picture.
-uvec2 pixel_of(uint group, uint thread, uint turn) {
-    uint tiles = (frame.extent.x + 7u) / 8u;
-    uint tile = group * TILES + turn;
-    return uvec2(tile % tiles, tile / tiles) * uvec2(8u, 4u) + uvec2(thread % 8u, thread / 8u);
-}
-
-/// The thread's pixel in tile `turn` or the first one after it that lies in the picture; false where there is none.
-bool find_pixel(uint group, uint thread, inout uint turn, out uvec2 pixel) {
-    for (; turn < TILES; turn++) {
-        pixel = pixel_of(group, thread, turn);
-        if (all(lessThan(pixel, frame.extent))) {
-            return true;
-        }
+/// The path's ray has been traced. False where the path ends: at a light, or outside of the scene.
+bool follow(inout Path path, bool found, Hit hit, inout Terms terms) {
+    if (meet_sphere_light(path, found, hit.t, terms)) {
+        return false;
     }
-    return false;
-}
-
-/// Scattered rays in the low, shadow rays in the high 16 bits.
-uint pack_counts(uvec2 counts) {
-    uvec2 most = min(counts, 0xffffu);
-    return most.x | most.y << 16;
-}
-
-/// Paths of a pixel in this frame. Defined by the kernel.
-uint samples_of(uvec2 pixel);
-
-/// Takes a pixel's result, a sum over `samples`; `counts`: its scattered rays and shadow rays. Defined by the kernel.
-void write_pixel(uvec2 pixel, Terms terms, uint samples, uvec2 counts);
-
-/// The paths of all pixels of a thread, one after the other.
-void trace_pixels(uint group, uint thread) {
-    uint turn = 0u;
-    uint sampled = 0u;
-    uvec2 pixel;
-    bool paths_left = find_pixel(group, thread, turn, pixel);
-    uint samples = samples_of(pixel);
-    Path path = path_begin(pixel, frame.first_sample);
-    Terms terms = no_terms();
-    Pending pending;
-    pending.ray = NO_RAY;
-    // Shadow rays that the path's last vertex has yet to send.
-    uint shadow_rays = 0u;
-    Hit hit;
-    vec3 wo;
-    uvec2 counts = uvec2(0u);
-    bool ended = false;
-    while (paths_left) {
-        bool lights = pending.ray.t_max > 0.0;
-        bool scatters = !lights && shadow_rays == 0u;
-        Ray ray = pending.ray;
-        uint seed = pending.alpha_seed;
-        if (scatters) {
-            ray = path.ray;
-            seed = alpha_seed(path);
-        }
-        Hit found;
-        bool blocked = accel_trace(ray, lights, seed, found);
-        counts += uvec2(scatters, lights);
-
-        bool shade = shadow_rays > 0u;
-        if (scatters) {
-            ended = meet_sphere_light(path, blocked, found.t, terms);
-            if (!ended && !blocked) {
-                add_environment(path, terms);
-                ended = true;
-            }
-            if (!ended) {
-                hit = found;
-                wo = -path.ray.direction;
-                path.cone = cone_advance(path.cone, hit.t);
-                shade = true;
-            }
-        } else if (lights && !blocked) {
-            add_term(terms, pending.term, pending.diffuse_weight, pending.specular_weight, pending.radiance);
-        }
-        pending.ray = NO_RAY;
-        if (shade) {
-            HitPoint point = hit_point(hit, -wo, path.cone);
-            ended = scatters && !arrive(path, hit, point, terms);
-            if (!ended) {
-                float rays = path.vertex == 0u ? float(parameters.first_shadow_rays) : 1.0;
-                shadow_rays = (scatters ? uint(rays) : shadow_rays) - 1u;
-                path.numbers.dimension = scatters ? 1u + PAIRS_PER_VERTEX * path.vertex : EXTRA_PAIRS + 2u * shadow_rays;
-                vec4 light;
-                light.xy = sample_2d(path.numbers);
-                light.zw = sample_2d(path.numbers);
-                path.numbers.dimension = SELECTION_PAIRS + 16u * path.vertex + shadow_rays;
-                pending = sample_direct(path, point, wo, light, sample_1d(path.numbers), rays);
-                pending.alpha_seed = alpha_seed(path) + 1u + shadow_rays;
-                if (shadow_rays == 0u) {
-                    path.numbers.dimension = 3u + PAIRS_PER_VERTEX * path.vertex;
-                    vec2 direction = sample_2d(path.numbers);
-                    ended = !scatter(path, point, wo, vec4(direction, sample_2d(path.numbers)), terms.attenuation);
-                    path.vertex++;
-                }
-            }
-        }
-        if (ended && pending.ray.t_max <= 0.0) {
-            sampled++;
-            terms.attenuation = sampled < samples ? vec3(0.0) : terms.attenuation;
-            if (sampled == samples) {
-                write_pixel(pixel, terms, samples, counts);
-                terms = no_terms();
-                counts = uvec2(0u);
-                sampled = 0u;
-                turn++;
-                paths_left = find_pixel(group, thread, turn, pixel);
-                samples = samples_of(pixel);
-            }
-            path = path_begin(pixel, frame.first_sample + sampled);
-            ended = false;
-        }
+    if (!found) {
+        add_environment(path, terms);
+        return false;
     }
+    path.cone = cone_advance(path.cone, hit.t);
+    return true;
+}
+
+/// One visit to the vertex that the path's ray has hit, for one shadow ray, `pending`; `shadow_rays`: that are left to send after it. The last
+/// visit chooses the next ray. False where the path ends.
+bool visit(inout Path path, Hit hit, bool arrives, inout uint shadow_rays, inout Terms terms, inout Pending pending) {
+    vec3 wo = -path.ray.direction;
+    HitPoint point = hit_point(hit, path.ray.direction, path.cone);
+    if (arrives && !arrive(path, hit, point, terms)) {
+        return false;
+    }
+    uint rays = path.vertex == 0u ? parameters.first_shadow_rays : 1u;
+    shadow_rays = (arrives ? rays : shadow_rays) - 1u;
+    path.numbers.dimension = arrives ? 1u + PAIRS_PER_VERTEX * path.vertex : EXTRA_PAIRS + 2u * shadow_rays;
+    vec4 light;
+    light.xy = sample_2d(path.numbers);
+    light.zw = sample_2d(path.numbers);
+    path.numbers.dimension = SELECTION_PAIRS + 16u * path.vertex + shadow_rays;
+    pending = sample_direct(path, point, wo, light, sample_1d(path.numbers), float(rays));
+    pending.alpha_seed = alpha_seed(path) + 1u + shadow_rays;
+    if (shadow_rays > 0u) {
+        return true;
+    }
+    path.numbers.dimension = 3u + PAIRS_PER_VERTEX * path.vertex;
+    vec2 direction = sample_2d(path.numbers);
+    bool goes_on = scatter(path, point, wo, vec4(direction, sample_2d(path.numbers)), terms.attenuation);
+    path.vertex++;
+    return goes_on;
 }
 
 #endif

@@ -5,7 +5,7 @@
 
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
-use crate::paths::megakernel::Terms;
+use crate::paths::terms::Terms;
 
 /// Specialization constant: the diffuse terms are one.
 const FILTERED: u32 = 202;

@@ -10,7 +10,7 @@
 
 use crate::frame::{BufferHandle, FrameBuilder, History, ImageHandle, PassBuilder};
 use crate::gpu::{GpuError, vk};
-use crate::paths::megakernel::Terms;
+use crate::paths::terms::Terms;
 
 /// Specialization constants.
 const CAPACITY: u32 = 221;

@@ -1,4 +1,4 @@
-//! Filters of the radiance behind the filter vertex (paths::megakernel::Terms), each in a file or folder of its name.
+//! Filters of the radiance behind the filter vertex (paths::terms::Terms), each in a file or folder of its name.
 
 pub mod hpsf;
 pub mod smooth;

@@ -6,7 +6,7 @@
 use crate::filter::hpsf::Filtered;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
-use crate::paths::megakernel::FilterVertex;
+use crate::paths::terms::FilterVertex;
 
 /// Specialization constant: pixels between taps.
 const STEP: u32 = 224;

@@ -5,7 +5,7 @@
 
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
-use crate::paths::megakernel::Terms;
+use crate::paths::terms::Terms;
 
 pub fn add(frame: &mut FrameBuilder, terms: &Terms) -> Result<ImageHandle, GpuError> {
     let diffuse = frame.color_image("diffuse")?;

@@ -1,9 +1,10 @@
-//! Whole paths in one kernel: shaders_glsl/paths/path.glsl, with radiance summed up (megakernel.comp) or its terms apart
+//! Whole paths in one kernel: shaders_glsl/paths/megakernel.glsl, with radiance summed up (megakernel.comp) or its terms apart
 //! (megakernel_terms.comp; Meijer, section 4.1, algorithm 1).
 //!
 //! Takes the scene. Also returns `ray_count`: scattered rays in the low, shadow rays in the high 16 bits. No history. Writes 20 bytes per
 //! pixel, or 124 with terms (12 and 76 at fp16), 24 of them for the filter vertex; traces up to 2 (bounces + 1) + 1 rays per sample.
 
+use super::terms::Terms;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::{DeviceKind, GpuError, vk};
 
@@ -33,57 +34,9 @@ pub fn add(frame: &mut FrameBuilder) -> Result<ImageHandle, GpuError> {
     Ok(radiance)
 }
 
-/// What one path per pixel is made of; shaders_glsl/paths/terms.glsl says how the terms sum up.
-#[derive(Debug, Clone, Copy)]
-pub struct Terms {
-    pub before: ImageHandle,
-    pub attenuation: ImageHandle,
-    pub diffuse_direct: ImageHandle,
-    pub diffuse_indirect: ImageHandle,
-    pub specular_direct: ImageHandle,
-    pub specular_indirect: ImageHandle,
-    pub vertex: FilterVertex,
-}
-
-/// Where the terms are kept apart: the first vertex with a diffuse lobe.
-#[derive(Debug, Clone, Copy)]
-pub struct FilterVertex {
-    /// Relative to the frame's origin, metres; w: view-plane distance of the path up to it, 0 where there is no such vertex.
-    pub position: ImageHandle,
-    /// Octahedral, 32 bits: shading normal, and the way the path arrives.
-    pub normal: ImageHandle,
-    pub incident: ImageHandle,
-}
-
-impl Terms {
-    /// Each with its name in shaders.
-    pub fn named(&self) -> [(&'static str, ImageHandle); 6] {
-        [
-            ("before", self.before),
-            ("attenuation", self.attenuation),
-            ("diffuse_direct", self.diffuse_direct),
-            ("diffuse_indirect", self.diffuse_indirect),
-            ("specular_direct", self.specular_direct),
-            ("specular_indirect", self.specular_indirect),
-        ]
-    }
-}
-
 /// One sample per pixel, through the same point of the pixel as the g-buffer's.
 pub fn add_with_terms(frame: &mut FrameBuilder) -> Result<Terms, GpuError> {
-    let terms = Terms {
-        before: frame.color_image("before")?,
-        attenuation: frame.color_image("attenuation")?,
-        diffuse_direct: frame.color_image("diffuse_direct")?,
-        diffuse_indirect: frame.color_image("diffuse_indirect")?,
-        specular_direct: frame.color_image("specular_direct")?,
-        specular_indirect: frame.color_image("specular_indirect")?,
-        vertex: FilterVertex {
-            position: frame.image("filter_position", vk::Format::R32G32B32A32_SFLOAT)?,
-            normal: frame.image("filter_normal", vk::Format::R32_UINT)?,
-            incident: frame.image("filter_incident", vk::Format::R32_UINT)?,
-        },
-    };
+    let terms = Terms::new(frame)?;
     let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
     let (per_group, groups) = (tiles_per_group(frame), tiles(frame).div_ceil(tiles_per_group(frame)));
     let pass = frame.pass("megakernel", "paths/megakernel_terms").constant(TILES, per_group).groups(groups);

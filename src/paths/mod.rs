@@ -3,3 +3,4 @@
 pub mod energy;
 pub mod gbuffer;
 pub mod megakernel;
+pub mod terms;

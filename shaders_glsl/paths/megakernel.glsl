@@ -1,0 +1,102 @@
+// Whole paths in one kernel. Each turn of the loop traces a ray through the one traversal call site, for some threads a shadow ray, for
+// others a scattered one. A thread has several pixels and starts the next path when one has ended, so that no thread waits for its
+// neighbours' longer paths, and every turn has a ray to trace.
+#ifndef PATHS_MEGAKERNEL_GLSL
+#define PATHS_MEGAKERNEL_GLSL
+
+#include "accel/trace.glsl"
+#include "paths/path.glsl"
+
+/// Tiles of 8x4 pixels that a workgroup of 32 threads works off.
+layout(constant_id = 201) const uint TILES = 1;
+
+/// Pixel of a thread of 32 in the group's tile `turn`; tiles of 8x4 pixels go along the rows of the picture.
+uvec2 pixel_of(uint group, uint thread, uint turn) {
+    uint tiles = (frame.extent.x + 7u) / 8u;
+    uint tile = group * TILES + turn;
+    return uvec2(tile % tiles, tile / tiles) * uvec2(8u, 4u) + uvec2(thread % 8u, thread / 8u);
+}
+
+/// The thread's pixel in tile `turn` or the first one after it that lies in the picture; false where there is none.
+bool find_pixel(uint group, uint thread, inout uint turn, out uvec2 pixel) {
+    for (; turn < TILES; turn++) {
+        pixel = pixel_of(group, thread, turn);
+        if (all(lessThan(pixel, frame.extent))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Scattered rays in the low, shadow rays in the high 16 bits.
+uint pack_counts(uvec2 counts) {
+    uvec2 most = min(counts, 0xffffu);
+    return most.x | most.y << 16;
+}
+
+/// Paths of a pixel in this frame. Defined by the kernel.
+uint samples_of(uvec2 pixel);
+
+/// Takes a pixel's result, a sum over `samples`; `counts`: its scattered rays and shadow rays. Defined by the kernel.
+void write_pixel(uvec2 pixel, Terms terms, uint samples, uvec2 counts);
+
+/// The paths of all pixels of a thread, one after the other.
+void trace_pixels(uint group, uint thread) {
+    uint turn = 0u;
+    uint sampled = 0u;
+    uvec2 pixel;
+    bool paths_left = find_pixel(group, thread, turn, pixel);
+    uint samples = samples_of(pixel);
+    Path path = path_begin(pixel, frame.first_sample);
+    Terms terms = no_terms();
+    Pending pending;
+    pending.ray = NO_RAY;
+    // Shadow rays that the path's last vertex has yet to send.
+    uint shadow_rays = 0u;
+    Hit hit;
+    uvec2 counts = uvec2(0u);
+    bool ended = false;
+    while (paths_left) {
+        bool lights = pending.ray.t_max > 0.0;
+        bool scatters = !lights && shadow_rays == 0u;
+        Ray ray = pending.ray;
+        uint seed = pending.alpha_seed;
+        if (scatters) {
+            ray = path.ray;
+            seed = alpha_seed(path);
+        }
+        Hit found;
+        bool blocked = accel_trace(ray, lights, seed, found);
+        counts += uvec2(scatters, lights);
+
+        bool shade = shadow_rays > 0u;
+        if (scatters) {
+            shade = follow(path, blocked, found, terms);
+            ended = !shade;
+            hit = found;
+        } else if (lights && !blocked) {
+            add_term(terms, pending.term, pending.diffuse_weight, pending.specular_weight, pending.radiance);
+        }
+        pending.ray = NO_RAY;
+        if (shade) {
+            ended = !visit(path, hit, scatters, shadow_rays, terms, pending);
+        }
+        if (ended && pending.ray.t_max <= 0.0) {
+            sampled++;
+            terms.attenuation = sampled < samples ? vec3(0.0) : terms.attenuation;
+            if (sampled == samples) {
+                write_pixel(pixel, terms, samples, counts);
+                terms = no_terms();
+                counts = uvec2(0u);
+                sampled = 0u;
+                turn++;
+                paths_left = find_pixel(group, thread, turn, pixel);
+                samples = samples_of(pixel);
+            }
+            path = path_begin(pixel, frame.first_sample + sampled);
+            ended = false;
+        }
+    }
+}
+
+#endif
