@@ -32,7 +32,7 @@ pub fn relative_error(pictures: &[Image], reference: &Reference) -> Result<f64, 
     Ok((sum / pictures.len() as f64 - reference.standard_error().powi(2)).max(0.0).sqrt())
 }
 
-/// Every figure of error, split, temporal error and faults. `before`: the reference of the frame before, where something moves.
+/// Every figure of error, split, temporal error, faults and the reference. `before`: the reference of the frame before, where something moves.
 ///
 /// # Errors
 /// Pictures of another size than the reference.

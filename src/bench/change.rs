@@ -8,6 +8,7 @@
 
 use super::figure::{Better, FigureKind, Group};
 use super::record::Figure;
+use crate::metrics::estimate::NORMAL_QUANTILE;
 use crate::metrics::statistics::{BatchMeans, quantile, two_sided_p};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
@@ -70,9 +71,16 @@ impl Change {
             Scale::Difference => [1.0; 2],
         };
         let sampled = a.samples.len().min(b.samples.len()) > 1;
+        let stated = [Error::stated(a, units[0]), Error::stated(b, units[1])];
         let spread = match centre {
             _ if !sampled && is_exact(kind) => Spread::Exact,
-            _ if !sampled => Spread::Unknown,
+            _ if !sampled => {
+                if let [Some(a), Some(b)] = stated {
+                    welch([a, b])
+                } else {
+                    Spread::Unknown
+                }
+            }
             Centre::Mean if same_seeds && a.samples.len() == b.samples.len() => paired(&a.samples, &b.samples, units),
             Centre::Mean => welch([Error::of_mean(&a.samples, units[0]), Error::of_mean(&b.samples, units[1])]),
             Centre::Quantile(at) => welch([Error::of_quantile(&a.samples, at, units[0]), Error::of_quantile(&b.samples, at, units[1])]),
@@ -164,6 +172,12 @@ struct Error {
 }
 
 impl Error {
+    /// Of a normal figure that came with an interval and no samples.
+    fn stated(figure: &Figure, unit: f64) -> Option<Self> {
+        let standard_error = (figure.high - figure.low) / (2.0 * NORMAL_QUANTILE) / unit;
+        (standard_error > 0.0).then_some(Error { variance: standard_error.powi(2), degrees_of_freedom: f64::INFINITY })
+    }
+
     fn of_mean(samples: &[f64], unit: f64) -> Self {
         let batches: BatchMeans = samples.iter().map(|sample| sample / unit).collect();
         Error { variance: batches.variance_of_mean(), degrees_of_freedom: samples.len() as f64 - 1.0 }
@@ -255,6 +269,22 @@ mod tests {
         assert_eq!(change("memory_bytes", &[10.0], &[20.0], true).interval(0.95), Some([2.0; 2]));
         assert_eq!(change("memory_bytes", &[10.0], &[10.0], true).p_value(), Some(1.0));
         assert_eq!(change("relmse", &[0.0], &[0.0], true).estimate(), 0.0);
+    }
+
+    /// By hand: standard errors 0.03 and 0.04 of means near 1 make 0.05 of their ratio.
+    #[test]
+    fn figures_that_state_an_interval_are_normal() {
+        let figure = |value: f64, error: f64| Figure {
+            value,
+            low: value - NORMAL_QUANTILE * error,
+            high: value + NORMAL_QUANTILE * error,
+            unit: String::new(),
+            samples: vec![],
+        };
+        let kind = figure::find("reference_radiance").unwrap();
+        let change = Change::of(kind, &figure(1.0, 0.03), &figure(1.0, 0.04), true).unwrap();
+        let Spread::Estimated { standard_error, degrees_of_freedom } = change.spread else { panic!("{change:?}") };
+        assert!((standard_error - 0.05).abs() < 1e-12 && degrees_of_freedom.is_infinite());
     }
 
     #[test]

@@ -17,8 +17,16 @@ pub const FALSE_ALARMS: f64 = 0.05;
 const FEWEST_POINTS: usize = 3;
 
 /// What fails where nothing else is asked for, in percent.
-pub const DEFAULT_LIMITS: &[(&str, f64)] =
-    &[("frame_ms", 5.0), ("memory_bytes", 5.0), ("relmse", 10.0), ("flip", 5.0), ("energy", 0.5), ("nan", 0.0), ("infinite", 0.0)];
+pub const DEFAULT_LIMITS: &[(&str, f64)] = &[
+    ("frame_ms", 5.0),
+    ("memory_bytes", 5.0),
+    ("relmse", 10.0),
+    ("flip", 5.0),
+    ("energy", 0.5),
+    ("reference_radiance", 0.5),
+    ("nan", 0.0),
+    ("infinite", 0.0),
+];
 
 /// A figure to compare.
 #[derive(Debug, Clone, Copy)]
@@ -194,11 +202,12 @@ fn scopes(pairs: &[(&Record, Record)]) -> Vec<Scope> {
     std::iter::once(Scope::All).chain(techniques).collect()
 }
 
-/// Over points, by Student's t of their effects. None for few points and for exact figures, which each point tells for itself.
+/// Over points, by Student's t of their effects. None for few points and for what each point tells for itself: exact figures, and those
+/// of references, which points share.
 fn mean_change(kind: &FigureKind, changes: &[Change]) -> Option<Change> {
     let scale = Scale::of(kind);
     let changes: Vec<&Change> = changes.iter().filter(|change| change.scale == scale && change.spread != Spread::Exact).collect();
-    if changes.len() < FEWEST_POINTS {
+    if changes.len() < FEWEST_POINTS || kind.better == Better::Same {
         return None;
     }
     let mean = |values: &dyn Fn(&Change) -> f64| changes.iter().map(|change| values(change)).collect::<BatchMeans>();
@@ -231,6 +240,7 @@ fn worsening(better: Better, change: &Change) -> f64 {
         Better::Less => change_from_none,
         Better::More => -change_from_none,
         Better::One => (change.b - 1.0).abs() - (change.a - 1.0).abs(),
+        Better::Same => change_from_none.abs(),
         Better::Neither => 0.0,
     }
 }

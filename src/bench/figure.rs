@@ -11,6 +11,8 @@ pub enum Better {
     More,
     /// The nearer to 1 the better.
     One,
+    /// What a change of the program must leave as it is.
+    Same,
     /// A fact, neither good nor bad.
     Neither,
 }
@@ -28,6 +30,8 @@ pub enum Group {
     Temporal,
     /// Must be 0.
     Fault,
+    /// What errors are measured against.
+    Reference,
 }
 
 /// One thing that is measured.
@@ -48,8 +52,8 @@ const fn kind(group: Group, key: &'static str, name: &'static str, unit: &'stati
     FigureKind { key, name, unit, better, group, help }
 }
 
-use Better::{Less, More, Neither, One};
-use Group::{Error, Fault, Memory, Split, Temporal, Time};
+use Better::{Less, More, Neither, One, Same};
+use Group::{Error, Fault, Memory, Reference, Split, Temporal, Time};
 
 /// In the order of tables.
 pub static FIGURES: &[FigureKind] = &[
@@ -92,13 +96,14 @@ pub static FIGURES: &[FigureKind] = &[
     kind(Fault, "infinite", "infinite", "pixels", Less, "pixels that hold an infinity"),
     kind(Fault, "negative", "negative", "pixels", Less, "pixels that hold a negative value"),
     kind(
-        Fault,
+        Reference,
         "reference_ratio",
         "reference quality",
         "",
         More,
         "error measured over the reference's own standard error: 10 and more is good",
     ),
+    kind(Reference, "reference_radiance", "radiance of the reference", "W/(sr m^2)", Same, "mean over pixels and channels"),
 ];
 
 /// The figure of this key.

@@ -24,7 +24,7 @@ pub struct Args {
     #[arg(value_name = "B")]
     after: PathBuf,
     /// How much worse a figure may become: percent of A; for energy and ssim percent of 1; for psnr dB; for counts their number.
-    /// [default: frame_ms=5 memory_bytes=5 relmse=10 flip=5 energy=0.5 nan=0 infinite=0]
+    /// [default: frame_ms=5 memory_bytes=5 relmse=10 flip=5 energy=0.5 reference_radiance=0.5 nan=0 infinite=0]
     #[arg(long, value_name = "KEY=PERCENT", value_parser = parse_limit)]
     fail_above: Vec<(&'static FigureKind, f64)>,
     /// Compare this figure only; repeat for several [default: all that have a limit]

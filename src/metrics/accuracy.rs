@@ -28,7 +28,19 @@ pub struct Reference<'a> {
     pub before: Option<&'a Image>,
 }
 
-/// By the keys of the groups Error, Split, Temporal and Fault of `bench::figure::FIGURES`.
+impl Reference<'_> {
+    /// Over pixels and channels, with the interval that its own noise leaves. A pixel's channels come from the same paths: their errors add up.
+    fn mean_radiance(&self) -> Estimate {
+        let count = self.mean.pixels.len() as f64;
+        let over_channels = |pixel: &[f32; 3], of: fn(f64) -> f64| pixel.iter().map(|&value| of(f64::from(value))).sum::<f64>() / 3.0;
+        let radiance = self.mean.pixels.iter().map(|pixel| over_channels(pixel, |radiance| radiance)).sum::<f64>() / count;
+        let variances = self.variance.iter().flat_map(|variance| &variance.pixels);
+        let variance = variances.map(|pixel| over_channels(pixel, f64::sqrt).powi(2)).sum::<f64>() / count.powi(2);
+        Estimate::exact(radiance).widened(variance.sqrt())
+    }
+}
+
+/// By the keys of the groups Error, Split, Temporal, Fault and Reference of `bench::figure::FIGURES`.
 pub type Figures = BTreeMap<&'static str, Estimate>;
 
 /// Means over seeds with their intervals; faults are totals.
@@ -51,6 +63,7 @@ pub fn accuracy(shots: &[Shot], reference: &Reference, mapping: &ToneMapping) ->
     samples.add_reference_ratio(&pairs, reference)?;
     let mut figures = samples.figures();
     figures.extend(faults(shots));
+    figures.insert("reference_radiance", reference.mean_radiance());
     if images.len() > 1 {
         let parts = split(&images, reference.mean, reference.variance, Weighting::Relative)?;
         figures.extend([("bias2", parts.bias2), ("variance", parts.variance)]);

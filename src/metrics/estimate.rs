@@ -83,7 +83,7 @@ impl Estimate {
 }
 
 /// Of the standard normal distribution, at 97.5 %.
-const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
+pub(crate) const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
 
 pub(super) fn check(samples: &[f64]) -> Result<(), SampleError> {
     match samples.iter().position(|value| !value.is_finite()) {

@@ -1,11 +1,11 @@
 //! bench-compare on runs that never took place: what it finds, and how often it is wrong.
 //!
 //! A run: 24 points of 2 techniques; 16 frames as the runner takes, log-normal with 3 to 8 % of noise that correlates by 0.4 from frame to frame; 8 seeds with
-//! 0.3 % of noise in energy, 1 % in FLIP, 10 % in relMSE.
+//! 0.3 % of noise in energy, 1 % in FLIP, 10 % in relMSE; references that know their radiance to 0.1 %.
 
 use crate::records::{figure, normal, record};
 use pathspace::bench::compare::{Comparison, FALSE_ALARMS, Verdict, subjects};
-use pathspace::bench::record::Record;
+use pathspace::bench::record::{Figure, Record};
 use rand::SeedableRng;
 use rand_pcg::Pcg32;
 use rayon::prelude::*;
@@ -18,12 +18,14 @@ const POINTS: usize = 24;
 struct Injected {
     slowdown: f64,
     energy_lost: f64,
+    /// By the integrator, and so by the reference, which `energy` is relative to.
+    reference_lost: f64,
     at: fn(usize) -> bool,
     /// Of both runs.
     frames: usize,
 }
 
-const NOTHING: Injected = Injected { slowdown: 0.0, energy_lost: 0.0, at: |_| false, frames: 16 };
+const NOTHING: Injected = Injected { slowdown: 0.0, energy_lost: 0.0, reference_lost: 0.0, at: |_| false, frames: 16 };
 
 fn frames(count: usize, median: f64, noise: f64, rng: &mut Pcg32) -> Vec<f64> {
     const CORRELATION: f64 = 0.4;
@@ -35,6 +37,13 @@ fn frames(count: usize, median: f64, noise: f64, rng: &mut Pcg32) -> Vec<f64> {
     (0..count).map(|_| frame()).collect()
 }
 
+/// Known by its standard error instead of by samples.
+fn reference_radiance(mean: f64, rng: &mut Pcg32) -> Figure {
+    let error = 0.001;
+    let value = mean + error * normal(rng);
+    Figure { value, low: value - 1.96 * error, high: value + 1.96 * error, unit: String::new(), samples: vec![] }
+}
+
 fn run(injected: Injected, rng: &mut Pcg32) -> Vec<Record> {
     let seeds = |mean: f64, noise: f64, rng: &mut Pcg32| figure((0..8).map(|_| mean * (noise * normal(rng)).exp()).collect());
     let mut point = |i: usize| {
@@ -44,6 +53,7 @@ fn run(injected: Injected, rng: &mut Pcg32) -> Vec<Record> {
         let figures = [
             ("frame_ms", figure(frames(injected.frames, (1.0 + i as f64) * (1.0 + here.slowdown), noise, rng))),
             ("energy", seeds(1.0 - here.energy_lost, 0.003, rng)),
+            ("reference_radiance", reference_radiance(1.0 - here.reference_lost, rng)),
             ("flip", seeds(0.1, 0.01, rng)),
             ("relmse", seeds(0.01, 0.1, rng)),
         ];
@@ -125,4 +135,15 @@ fn a_percent_of_energy_lost_is_found() {
     let by_point = share(&comparisons, |comparison| regressed_points(comparison, "energy") > 0);
     println!("1 % of energy lost with one technique: found by summary in {by_summary}, at a point in {by_point}");
     assert!(by_summary >= 0.99, "{by_summary}");
+}
+
+/// The reference is rendered anew by the same code, so `energy` stays at 1.
+#[test]
+fn a_percent_of_energy_lost_in_the_integrator_is_found() {
+    let injected = Injected { reference_lost: 0.01, at: |_| true, ..NOTHING };
+    let comparisons = comparisons(injected);
+    let power = share(&comparisons, |comparison| regressed_points(comparison, "reference_radiance") > 0);
+    println!("1 % of energy lost by the integrator: found in {power}");
+    assert!(power >= 0.99, "{power}");
+    assert_eq!(share(&comparisons, |comparison| summary_regressed(comparison, "energy")), 0.0);
 }

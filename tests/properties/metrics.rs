@@ -86,16 +86,28 @@ fn accuracy_has_every_figure_of_its_groups_and_no_other() {
     let variance = Image::new(SIZE, SIZE, vec![[1e-6; 3]; truth.pixels.len()]);
     let reference = Reference { mean: &truth, variance: Some(&variance), before: Some(&truth) };
     let figures = accuracy(&shots(&images), &reference, &ToneMapping::default()).unwrap();
-    let groups = [Group::Error, Group::Split, Group::Temporal, Group::Fault];
+    let groups = [Group::Error, Group::Split, Group::Temporal, Group::Fault, Group::Reference];
     let mut expected: Vec<&str> = FIGURES.iter().filter(|figure| groups.contains(&figure.group)).map(|figure| figure.key).collect();
     expected.sort_unstable();
     assert_eq!(figures.keys().copied().collect::<Vec<_>>(), expected);
     for (key, estimate) in &figures {
         assert!(estimate.low <= estimate.value && estimate.value <= estimate.high, "{key}: {estimate:?}");
-        assert_eq!(estimate.samples.len(), 3, "{key}");
+        assert_eq!(estimate.samples.len(), if *key == "reference_radiance" { 0 } else { 3 }, "{key}");
     }
     let ratio = (figures["relmse"].value / relmse(&Pair::new(&images[0], &truth).unwrap(), 0.0) - 1.0).abs();
     assert!(ratio < 0.2, "the mean of three like seeds is near one's: {ratio}");
+}
+
+/// By hand: 6 standard errors of 0.2, of which each pixel's three add up: 0.2 / sqrt(2) for the mean.
+#[test]
+fn the_radiance_of_a_reference_is_as_uncertain_as_its_pixels() {
+    let [mean, variance] = [3.0, 0.04].map(|value| Image::new(2, 1, vec![[value; 3]; 2]));
+    let reference = Reference { mean: &mean, variance: Some(&variance), before: None };
+    let figures = accuracy(&[Shot { last: &mean, before: None }], &reference, &ToneMapping::default()).unwrap();
+    let reach = 1.96 * 0.2 / 2f64.sqrt();
+    let radiance = &figures["reference_radiance"];
+    let errors = [radiance.value - 3.0, radiance.low - (3.0 - reach), radiance.high - (3.0 + reach)];
+    assert!(errors.iter().all(|error| error.abs() < 1e-4), "{radiance:?}");
 }
 
 #[test]

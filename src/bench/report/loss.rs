@@ -12,14 +12,14 @@ pub struct Loss {
 }
 
 impl Loss {
-    /// None for facts, neither good nor bad, and for what is not finite.
+    /// None for facts, neither good nor bad at one point, and for what is not finite.
     pub fn of(figure: &Figure, better: Better) -> Option<Loss> {
         let Figure { value, low, high, .. } = *figure;
         let loss = match better {
             Better::Less => Loss { value, low, high },
             Better::More => Loss { value: -value, low: -high, high: -low },
             Better::One => distance_from_one(value, low, high),
-            Better::Neither => return None,
+            Better::Same | Better::Neither => return None,
         };
         [loss.value, loss.low, loss.high].iter().all(|x| x.is_finite()).then_some(loss)
     }
