@@ -102,6 +102,15 @@ uint hash_fingerprint(CellKey key) {
     return max(hash ^ hash >> 16, 1u);
 }
 
+/// All of a key in two words, neither of them zero: coordinates modulo 2^16, the level modulo 64, 8 bits of normal. It tells keys apart that
+/// are less than 2^16 cells from each other, as those in one view are: from the eye, cells of one level are at most
+/// 2 / (width in pixels * angle of a pixel) cells away, 2^13 of one pixel in 8K.
+uvec2 exact_key(CellKey key) {
+    uvec3 cell = uvec3(key.cell) & 0xffffu;
+    uint rest = cell.z | (uint(key.level) & 63u) << 16 | (key.normal & 0xffu) << 22;
+    return uvec2(cell.x | cell.y << 16 & 0x7fffffffu, cell.y >> 15 | rest << 1) | 0x80000000u;
+}
+
 /// A hash scaled to 0..capacity - 1.
 uint hash_slot(uint hash, uint capacity) {
     uint slot;

@@ -71,7 +71,9 @@ layout(constant_id = 135) const uint HPSF_NEIGHBOURS = 0;
 //@ hpsf.seed on off|on
 /// New cells begin with what cells of the neighbouring levels know, when the camera has moved. Off: they begin with nothing.
 layout(constant_id = 136) const uint HPSF_SEED = 1;
-
+//@ hpsf.keys fingerprint fingerprint|exact
+/// What tells the table's keys apart: a hash of 32 bits, or 64 bits that hold all of the key. Exact never takes one cell for another; 4 bytes more a cell (8 swapped), and another word read with each that matches.
+layout(constant_id = 138) const uint HPSF_KEYS = 0;
 //@ hpsf.temporal off off|on
 /// Pictures of earlier frames, moved by motion vectors, are averaged with this one: antialiasing with frame.jitter, less noise in what is not filtered; lag. Costs a primary ray and a pass.
 layout(constant_id = 137) const uint HPSF_TEMPORAL = 0;

@@ -29,7 +29,7 @@ impl Scale {
     /// Ratios for all that is positive by nature; differences where the scale has a fixed point, or values may be negative.
     pub fn of(kind: &FigureKind) -> Self {
         match (kind.group, kind.better, kind.key) {
-            (Group::Fault, ..) | (_, Better::One, _) | (.., "psnr" | "ssim" | "bias2" | "temporal") => Scale::Difference,
+            (Group::Fault | Group::Table, ..) | (_, Better::One, _) | (.., "psnr" | "ssim" | "bias2" | "temporal") => Scale::Difference,
             _ => Scale::Ratio,
         }
     }

@@ -28,6 +28,8 @@ pub enum Group {
     Split,
     /// Between subsequent frames.
     Temporal,
+    /// Of a hash table, where the technique has one.
+    Table,
     /// Must be 0.
     Fault,
     /// What errors are measured against.
@@ -53,7 +55,7 @@ const fn kind(group: Group, key: &'static str, name: &'static str, unit: &'stati
 }
 
 use Better::{Less, More, Neither, One, Same};
-use Group::{Error, Fault, Memory, Reference, Split, Temporal, Time};
+use Group::{Error, Fault, Memory, Reference, Split, Table, Temporal, Time};
 
 /// In the order of tables.
 pub static FIGURES: &[FigureKind] = &[
@@ -92,6 +94,11 @@ pub static FIGURES: &[FigureKind] = &[
         Less,
         "mean tonemapped luminance difference of subsequent frames, beyond the reference's own (Voorhuis 2018, 7.1)",
     ),
+    kind(Table, "occupancy", "occupancy", "", Neither, "taken slots over all slots, after the last frame"),
+    kind(Table, "probes", "probes", "slots", Less, "slots looked at for a sample's key, mean: 1 where it is at home"),
+    kind(Table, "probes_p99", "probes, 99 %", "slots", Less, "slots looked at for a sample's key that 99 % of the samples stay within"),
+    kind(Table, "failed_insertions", "failed", "", Less, "insertions that found no slot over all insertions of the last frame"),
+    kind(Table, "collisions", "collisions", "", Less, "insertions into another key's slot over all of the last frame: whole keys compared"),
     kind(Fault, "nan", "NaN", "pixels", Less, "pixels that hold a NaN"),
     kind(Fault, "infinite", "infinite", "pixels", Less, "pixels that hold an infinity"),
     kind(Fault, "negative", "negative", "pixels", Less, "pixels that hold a negative value"),

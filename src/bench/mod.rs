@@ -17,6 +17,7 @@ pub mod runner;
 mod shots;
 mod stage;
 pub mod suite;
+mod table;
 
 pub use figure::{Better, FigureKind};
 pub use log::{Log, LogError};

@@ -7,7 +7,7 @@ use super::reference::{Reference, ReferenceCache, Subject};
 use super::shots::Shots;
 use super::stage::Stage;
 use super::suite::{Suite, SuiteError};
-use super::{accuracy, roofline};
+use super::{accuracy, roofline, table};
 use crate::display::image::write_png_bytes;
 use crate::display::{Image, ImageError, ToneMapping};
 use crate::gpu::{Gpu, GpuError};
@@ -91,6 +91,7 @@ impl<'a> Runner<'a> {
         let mut figures = time_figures(&shots.timings, stage.load_ms, frames_of_picture(&settings, &planned.point));
         figures.extend(roofline::figures(&shots.timings, planned.point.size));
         figures.extend(truth.figures);
+        figures.extend(table::figures(self.gpu, &stage.scene, &settings, &planned.point)?);
         let record = Record {
             version: VERSION,
             key: planned.key.clone(),

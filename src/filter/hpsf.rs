@@ -3,10 +3,10 @@
 //! Takes the diffuse terms and their filter vertices; returns `diffuse`, the mean over a cell of the world, and puts out `hpsf_samples`, the
 //! samples that it is over (0: unfiltered). History: the table, persistent or swapped with every frame.
 //!
-//! Three passes. collect: each pixel's sample into a cell, 56 bytes read per pixel, and per level 4 bytes of fingerprint read and 28
+//! Three passes. collect: each pixel's sample into a cell, 56 bytes read per pixel, and per level 4 bytes of key (exact: 8) read and 28
 //! (float: 16) of sums updated. merge: over slots, 4 bytes read each, and for those taken 32 (16) of sums, 16 of seed and 16 of
 //! mean. resolve: 56 bytes read and 20 written per pixel, 20 read per lookup and level. Where one of [`STATISTICS`] is asked for, a
-//! fourth pass puts out what became of the insertions.
+//! fourth pass puts out what became of the insertions, and a fifth before it whose keys the slots hold.
 
 use crate::frame::{BufferHandle, FrameBuilder, History, ImageHandle, PassBuilder};
 use crate::gpu::{GpuError, vk};
@@ -17,11 +17,12 @@ const CAPACITY: u32 = 221;
 const SAMPLE_BITS: u32 = 222;
 const FLOAT_SUMS: u32 = 223;
 
-/// Names of outputs about the table: slots looked at for each pixel's sample, its failed insertions, taken slots.
-pub const STATISTICS: [&str; 3] = ["hpsf_probed", "hpsf_failed", "hpsf_taken"];
+/// Names of outputs about the table: slots looked at for each pixel's sample, its failed insertions, those that share another key's slot;
+/// slots, and taken ones.
+pub const STATISTICS: [&str; 5] = ["hpsf_probed", "hpsf_failed", "hpsf_collided", "hpsf_slots", "hpsf_taken"];
 
 /// Bytes per slot.
-const FINGERPRINT: u64 = 4;
+const WORD: u64 = 4;
 const CELL: u64 = 16;
 
 /// What the table depends on.
@@ -32,6 +33,8 @@ pub struct Options {
     pub levels: u32,
     /// Two tables that change places with every frame.
     pub swapped: bool,
+    /// Keys of two words that hold all of the key, not a hash of it.
+    pub exact_keys: bool,
     /// Float atomics, where the device has them.
     pub float_sums: bool,
     /// Put out [`STATISTICS`].
@@ -47,7 +50,9 @@ pub struct Filtered {
 
 struct Table {
     capacity: u32,
-    fingerprints: History<BufferHandle>,
+    keys: History<BufferHandle>,
+    /// Of a slot.
+    key_bytes: u64,
     cells: History<BufferHandle>,
     seeds: BufferHandle,
     sums: BufferHandle,
@@ -59,7 +64,7 @@ struct Table {
 pub fn add(frame: &mut FrameBuilder, terms: &Terms, options: Options) -> Result<Filtered, GpuError> {
     let table = Table::new(frame, options)?;
     if options.swapped {
-        frame.fill("hpsf clear", table.fingerprints.current, 0);
+        frame.fill("hpsf clear", table.keys.current, 0);
     }
     table.collect(frame, terms)?;
     table.merge(frame)?;
@@ -79,9 +84,11 @@ impl Table {
         let most = frame.gpu().capabilities().max_storage_buffer_range / sums;
         let wanted = (f64::from(frame.pixels()) * options.cells_per_pixel).ceil() as u64;
         let capacity = wanted.clamp(64, most.min(u32::MAX.into()));
+        let key_bytes = if options.exact_keys { 2 * WORD } else { WORD };
         Ok(Self {
             capacity: capacity as u32,
-            fingerprints: kept(frame, "hpsf fingerprints", capacity * FINGERPRINT, options.swapped)?,
+            keys: kept(frame, "hpsf keys", capacity * key_bytes, options.swapped)?,
+            key_bytes,
             cells: kept(frame, "hpsf cells", capacity * CELL, options.swapped)?,
             seeds: frame.buffer("hpsf seeds", capacity * CELL)?,
             sums: frame.kept_buffer("hpsf sums", capacity * sums)?,
@@ -95,15 +102,15 @@ impl Table {
         let touched = self.insertions;
         let pass = reads_samples(frame.pass("hpsf collect", stem), terms).constant(CAPACITY, self.capacity);
         let pass = pass.constant(SAMPLE_BITS, sample_bits(self.insertions));
-        let pass = pass.updates("fingerprints", self.fingerprints.current).touching(touched * FINGERPRINT);
+        let pass = pass.updates("keys", self.keys.current).touching(touched * self.key_bytes);
         let pass = pass.updates("sums", self.sums).touching(touched * sum).writes("seeds", self.seeds);
-        pass.reads("known_cells", self.cells.previous).reads("known_fingerprints", self.fingerprints.previous).add()
+        pass.reads("known_cells", self.cells.previous).reads("known_keys", self.keys.previous).add()
     }
 
     fn merge(&self, frame: &mut FrameBuilder) -> Result<(), GpuError> {
         let pass = frame.pass("hpsf merge", "filter/hpsf/merge").elements(self.capacity).constant(CAPACITY, self.capacity);
         let pass = pass.constant(SAMPLE_BITS, sample_bits(self.insertions)).constant(FLOAT_SUMS, self.float_sums.into());
-        let pass = pass.updates("fingerprints", self.fingerprints.current).updates("sums", self.sums);
+        let pass = pass.updates("keys", self.keys.current).updates("sums", self.sums);
         pass.reads("seeds", self.seeds).updates("cells", self.cells.current).add()
     }
 
@@ -112,16 +119,20 @@ impl Table {
         let samples = frame.image("hpsf_samples", vk::Format::R32_UINT)?;
         let touched = u64::from(frame.pixels());
         let pass = reads_samples(frame.pass("hpsf resolve", "filter/hpsf/resolve"), terms).constant(CAPACITY, self.capacity);
-        let pass = pass.reads("fingerprints", self.fingerprints.current).touching(touched * FINGERPRINT);
+        let pass = pass.reads("keys", self.keys.current).touching(touched * self.key_bytes);
         let pass = pass.reads("cells", self.cells.current).touching(touched * CELL);
         pass.writes("diffuse", diffuse).writes("hpsf_samples", samples).add()?;
         Ok(Filtered { diffuse, samples })
     }
 
     fn statistics(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {
+        let owners = frame.buffer("hpsf owners", u64::from(self.capacity) * WORD)?;
+        frame.fill("hpsf no owners", owners, u32::MAX);
+        let pass = reads_vertices(frame.pass("hpsf owners", "filter/hpsf/owners"), terms).constant(CAPACITY, self.capacity);
+        pass.reads("keys", self.keys.current).updates("owners", owners).add()?;
         let images = STATISTICS.map(|name| frame.image(name, vk::Format::R32_UINT).map(|image| (name, image)));
         let pass = reads_vertices(frame.pass("hpsf statistics", "filter/hpsf/statistics"), terms).constant(CAPACITY, self.capacity);
-        let pass = pass.reads("fingerprints", self.fingerprints.current);
+        let pass = pass.reads("keys", self.keys.current).reads("owners", owners);
         images.into_iter().try_fold(pass, |pass, image| image.map(|(name, image)| pass.writes(name, image)))?.add()
     }
 }

@@ -71,6 +71,9 @@ fn a_run_leaves_a_record_of_every_point_its_pictures_and_a_report() {
         for picture in ["picture", "reference", "heatmap"] {
             assert!(results.join(record["pictures"][picture].as_str().unwrap()).is_file(), "{picture}");
         }
+        let of_table = ["occupancy", "probes", "probes_p99", "failed_insertions", "collisions"];
+        let has_table = record["point"]["technique"].as_str().unwrap().contains("hpsf");
+        assert!(of_table.iter().all(|key| record["figures"].get(key).is_some() == has_table), "{}", record["command"]);
         assert_eq!(record["provenance"]["seeds"].as_array().unwrap().len(), 3);
         assert!(record["passes"][0]["bytes_written"].as_u64().unwrap() > 0);
     }

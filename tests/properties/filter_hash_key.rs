@@ -106,6 +106,34 @@ fn hashes_differ_across_negative_coordinates_levels_and_normals() {
     }
 }
 
+const EXACT: &str = r#"
+#include "lib/hash_key.glsl"
+struct In { ivec3 cell; int level; uint normal; };
+struct Out { uvec2 words; };
+void kernel(uint i) {
+    outputs[i] = Out(exact_key(CellKey(inputs[i].cell, inputs[i].level, inputs[i].normal)));
+}
+"#;
+
+/// Every bit of what identifies a key within a view is there once; neither word is ever the empty slot's.
+#[test]
+fn exact_keys_hold_all_of_a_key() {
+    let mut rng = Pcg32::seed_from_u64(4);
+    let key = |_| {
+        let cell = [0; 3].map(|_| rng.random_range(-1_000_000..1_000_000));
+        [cell[0], cell[1], cell[2], rng.random_range(-100..=100), rng.random_range(0..256)]
+    };
+    let keys: Vec<[i32; 5]> = (0..50_000).map(key).chain([[0; 5]]).collect();
+    let words: Vec<[u32; 2]> = common::run_kernel(&common::gpu(), EXACT, &keys);
+    for ([x, y, z, level, normal], words) in keys.into_iter().zip(words) {
+        assert!(words.iter().all(|word| word >> 31 == 1));
+        let bits = u64::from(words[0] & 0x7fff_ffff) | u64::from(words[1] & 0x7fff_ffff) << 31;
+        let field = |value: i32, width: u32, at: u32| u64::from(value as u32 & ((1 << width) - 1)) << at;
+        let expected = field(x, 16, 0) | field(y, 16, 16) | field(z, 16, 32) | field(level, 6, 48) | field(normal, 8, 54);
+        assert_eq!(bits, expected, "{x} {y} {z}, level {level}, normal {normal}");
+    }
+}
+
 /// hpsf.probes by default.
 const PROBES: usize = 8;
 

@@ -26,8 +26,8 @@ fn sums(gpu: &pathspace::gpu::Gpu, settings: &Settings) -> ([f64; 2], Image) {
 fn fixed_point_gives_the_same_bits_in_every_run() {
     let gpu = common::gpu();
     let scene = builtin("cornell");
-    for table in ["persistent", "swapped"] {
-        let settings = with(&[("hpsf.table", table), ("hpsf.cells", "4")]);
+    for (table, keys) in [("persistent", "fingerprint"), ("swapped", "fingerprint"), ("persistent", "exact"), ("swapped", "exact")] {
+        let settings = with(&[("hpsf.table", table), ("hpsf.cells", "4"), ("hpsf.keys", keys)]);
         let [a, b] = [0, 1].map(|_| render_frames(&gpu, &scene, &settings, "hpsf", 4));
         assert_eq!(bits(&a.picture().unwrap()), bits(&b.picture().unwrap()), "{table}");
         let seen = output(&a, "attenuation").pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
@@ -49,15 +49,32 @@ fn cells_hold_exactly_what_went_in() {
     }
 }
 
+/// A fingerprint that two keys share would mix their cells: then pictures would differ. Some 10^4 keys, 8 probes: 2 * 10^-5 by chance.
+#[test]
+fn fingerprints_give_the_picture_of_exact_keys() {
+    let gpu = common::gpu();
+    let scene = builtin("hall-flight");
+    let picture = |keys: &str, table: &str| {
+        let settings =
+            with(&[("hpsf.keys", keys), ("hpsf.table", table), ("hpsf.cells", "8"), ("hpsf.width", "2"), ("hpsf.normal_bits", "8")]);
+        bits(&render_frames(&gpu, &scene, &settings, "hpsf", 4).picture().unwrap())
+    };
+    for table in ["persistent", "swapped"] {
+        assert_eq!(picture("fingerprint", table), picture("exact", table), "{table}");
+    }
+}
+
 /// 64 slots for some hundreds of cells: the pixels that find none keep their own sample, and not one is lost.
 #[test]
 fn a_full_table_leaves_pixels_unfiltered_and_darkens_nothing() {
     let gpu = common::gpu();
     let tiny = [("hpsf.cells", "0.001"), ("hpsf.width", "4"), ("hpsf.lookups", "0"), ("hpsf.levels", "1")];
-    let ([filtered, raw], samples) = sums(&gpu, &with(&tiny));
-    assert!((filtered / raw - 1.0).abs() < 2e-6, "{filtered} {raw}");
-    let found = samples.pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
-    assert!(found > 0 && found < samples.pixels.len() / 3, "{found} pixels are filtered");
+    for keys in ["fingerprint", "exact"] {
+        let ([filtered, raw], samples) = sums(&gpu, &with(&[&tiny[..], &[("hpsf.keys", keys)]].concat()));
+        assert!((filtered / raw - 1.0).abs() < 2e-6, "{keys}: {filtered} {raw}");
+        let found = samples.pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
+        assert!(found > 0 && found < samples.pixels.len() / 3, "{keys}: {found} pixels are filtered");
+    }
 }
 
 #[test]

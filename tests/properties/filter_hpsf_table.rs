@@ -9,7 +9,7 @@ const PROBES: usize = 8;
 
 fn with(values: &[(&str, &str)]) -> Settings {
     let mut settings = settings(96, 54);
-    settings.outputs = ["hpsf_probed", "hpsf_failed", "hpsf_taken"].map(str::to_owned).to_vec();
+    settings.outputs = ["hpsf_probed", "hpsf_failed", "hpsf_collided", "hpsf_slots", "hpsf_taken"].map(str::to_owned).to_vec();
     set(&mut settings, values);
     settings
 }
@@ -23,23 +23,32 @@ struct Statistics {
     occupancy: f64,
     /// Insertions at which no slot was found, over all.
     failures: f64,
+    /// Insertions into another key's slot.
+    collisions: f64,
     /// Samples whose key was looked for in so many slots; the last: in vain.
     histogram: [usize; PROBES + 2],
 }
 
-fn statistics(settings: &Settings, frames: u32, slots: f64, levels: f64) -> Statistics {
+fn statistics(settings: &Settings, frames: u32, slots: usize, levels: f64) -> Statistics {
     let renderer = render_frames(&common::gpu(), &builtin("cornell"), settings, "hpsf", frames);
     let mut histogram = [0; PROBES + 2];
     values(&renderer, "hpsf_probed").into_iter().for_each(|probed| histogram[probed] += 1);
     let sum = |name| values(&renderer, name).iter().sum::<usize>() as f64;
     let vertices = histogram[1..].iter().sum::<usize>() as f64;
-    Statistics { occupancy: sum("hpsf_taken") / slots, failures: sum("hpsf_failed") / (vertices * levels), histogram }
+    assert_eq!(sum("hpsf_slots"), slots as f64);
+    Statistics {
+        occupancy: sum("hpsf_taken") / slots as f64,
+        collisions: sum("hpsf_collided"),
+        failures: sum("hpsf_failed") / (vertices * levels),
+        histogram,
+    }
 }
 
 #[test]
 fn at_the_default_size_hardly_an_insertion_fails() {
-    let found = statistics(&with(&[]), 8, 96.0 * 54.0, 2.0);
+    let found = statistics(&with(&[]), 8, 96 * 54, 2.0);
     assert!((0.005..0.5).contains(&found.occupancy), "occupancy {}", found.occupancy);
+    assert_eq!(found.collisions, 0.0);
     assert!(found.failures < 0.001, "failures {}", found.failures);
     let at_home = found.histogram[1] as f64 / found.histogram[1..].iter().sum::<usize>() as f64;
     assert!(at_home > 0.8 && found.histogram[PROBES + 1] == 0, "{:?}", found.histogram);
@@ -48,7 +57,7 @@ fn at_the_default_size_hardly_an_insertion_fails() {
 /// 64 slots for hundreds of cells: all are taken, most samples find none, and those that do had to go far.
 #[test]
 fn a_table_that_is_too_small_says_so() {
-    let found = statistics(&with(&[("hpsf.cells", "0.001"), ("hpsf.width", "4"), ("hpsf.levels", "1")]), 1, 64.0, 1.0);
+    let found = statistics(&with(&[("hpsf.cells", "0.001"), ("hpsf.width", "4"), ("hpsf.levels", "1")]), 1, 64, 1.0);
     assert_eq!(found.occupancy, 1.0);
     let vertices: usize = found.histogram[1..].iter().sum();
     assert_eq!(found.failures, found.histogram[PROBES + 1] as f64 / vertices as f64);

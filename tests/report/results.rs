@@ -103,6 +103,7 @@ fn figures(ms: f64, flip: f64) -> BTreeMap<String, Figure> {
         ("bias2", flip * flip * 0.1 - 0.002),
         ("variance", flip * flip * 0.9),
         ("temporal", flip * 0.2),
+        ("occupancy", 0.2),
         ("nan", 0.0),
         ("predicted_ms:Example GPU 2070", ms * 3.0),
     ];

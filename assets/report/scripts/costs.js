@@ -51,10 +51,12 @@
     const prediction = (key) => ({
       title: make("span", {}, key.slice(PREDICTION.length), make("br"), "prediction, ms"), help: "predicted, not measured", number: true, of: figure(key),
     });
+    const ofTables = data.figures.filter((kind) => kind.group === "table");
     const columns = [
       column("frame_ms"), column("frame_ms_p95", ({ value }) => number(value)), column("cpu_ms", ({ value }) => number(value)),
       column("first_frame_ms", ({ value }) => number(value)), column("rays_per_pixel", ({ value }) => number(value)),
       column("bytes_read", count), column("bytes_written", count), column("bandwidth", ({ value }) => number(value)), column("memory_bytes", count),
+      ...ofTables.map((kind) => column(kind.key)),
       ...predicted.map(prediction),
     ];
     const measured = columns.filter((column) => points.some((point) => column.of(point) != null));

@@ -13,7 +13,7 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 223) const bool FLOAT_SUMS = false;
 
-layout(set = 1, binding = 0, scalar) buffer Fingerprints { uint at[]; } fingerprints;
+layout(set = 1, binding = 0, scalar) buffer Keys { uint at[]; } keys;
 layout(set = 1, binding = 1, scalar) buffer Sums { uint at[]; } sums;
 layout(set = 1, binding = 2, scalar) readonly buffer Seeds { uvec4 at[]; } seeds;
 layout(set = 1, binding = 3, scalar) buffer Cells { uvec4 at[]; } cells;
@@ -46,7 +46,7 @@ float alpha_of(uint old_count, uint new_count) {
 
 void main() {
     uint slot = element_index();
-    if (slot >= CAPACITY || fingerprints.at[slot] == NO_FINGERPRINT) {
+    if (slot >= CAPACITY || keys.at[KEY_WORDS * slot] == NO_FINGERPRINT) {
         return;
     }
     Cell old = HPSF_TABLE == TABLE_PERSISTENT ? unpack_cell(cells.at[slot]) : EMPTY_CELL;
@@ -56,7 +56,9 @@ void main() {
         old.age++;
         cells.at[slot] = evicted ? uvec4(0u) : pack_cell(old);
         if (evicted) {
-            fingerprints.at[slot] = NO_FINGERPRINT;
+            for (uint word = 0u; word < KEY_WORDS; word++) {
+                keys.at[KEY_WORDS * slot + word] = NO_FINGERPRINT;
+            }
         }
         return;
     }

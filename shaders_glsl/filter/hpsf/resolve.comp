@@ -5,7 +5,7 @@
 // 3.3.1), or by the next coarser level that has enough (3.3.2). Where the sample's insertion failed, the pixel shows its own
 // radiance unfiltered, and `hpsf_samples` is 0.
 #include "filter/hpsf/cell.glsl"
-#include "filter/hpsf/table.glsl"
+#include "filter/hpsf/find.glsl"
 #include "lib/storage.glsl"
 
 layout(local_size_x = 8, local_size_y = 4) in;
@@ -15,22 +15,19 @@ layout(set = 1, binding = 1, COLOR_FORMAT) readonly uniform image2D diffuse_indi
 layout(set = 1, binding = 2, rgba32f) readonly uniform image2D filter_position;
 layout(set = 1, binding = 3, r32ui) readonly uniform uimage2D filter_normal;
 layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D filter_incident;
-layout(set = 1, binding = 5, scalar) readonly buffer Fingerprints { uint at[]; } fingerprints;
+layout(set = 1, binding = 5, scalar) readonly buffer Keys { uint at[]; } keys;
 layout(set = 1, binding = 6, scalar) readonly buffer Cells { uvec4 at[]; } cells;
 layout(set = 1, binding = 7, COLOR_FORMAT) writeonly uniform image2D diffuse;
 /// Samples that the pixel's radiance is the mean of; 0 where it is its own alone, or there is no filter vertex.
 layout(set = 1, binding = 8, r32ui) writeonly uniform uimage2D hpsf_samples;
 
+uint key_word(uint at) {
+    return keys.at[at];
+}
+
 Cell cell_of_key(CellKey key) {
-    uint fingerprint = hash_fingerprint(key);
-    uint home = home_slot(key);
-    for (uint i = 0u; i < parameters.hpsf_probes; i++) {
-        uint slot = probe(home, i);
-        if (fingerprints.at[slot] == fingerprint) {
-            return unpack_cell(cells.at[slot]);
-        }
-    }
-    return EMPTY_CELL;
+    uint slot = find_slot(key);
+    return slot == NO_SLOT ? EMPTY_CELL : unpack_cell(cells.at[slot]);
 }
 
 /// With the eight cells around it in the tangent plane.

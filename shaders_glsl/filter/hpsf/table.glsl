@@ -1,6 +1,7 @@
 // The hash table: Binder, section 3.2. A key's place is looked for in hpsf.probes slots from the one that its first hash names; its second
-// hash is its fingerprint there. Keys are never moved, and eviction leaves holes, so that all these slots are searched before a key
-// is taken to be absent.
+// hash is its fingerprint there (section 3.2.1), or, with hpsf.keys, two words that hold the key itself. Keys are never moved, and eviction
+// leaves holes, so that all these slots are searched before a key is taken to be absent. filter/hpsf/find.glsl and claim.glsl do
+// so in a kernel's buffer of keys.
 #ifndef FILTER_HPSF_TABLE_GLSL
 #define FILTER_HPSF_TABLE_GLSL
 
@@ -9,12 +10,16 @@
 
 layout(constant_id = 221) const uint CAPACITY = 1;
 
+const uint KEYS_FINGERPRINT = 0u;
+const uint KEYS_EXACT = 1u;
 const uint TIME_FRAME = 0u;
 const uint TIME_AVERAGE = 1u;
 const uint TIME_INTEGRATE = 2u;
 const uint TABLE_PERSISTENT = 0u;
 const uint TABLE_SWAPPED = 1u;
 
+/// Of a slot in the buffer of keys. Zero: an empty slot.
+const uint KEY_WORDS = HPSF_KEYS == KEYS_EXACT ? 2u : 1u;
 const uint NO_SLOT = ~0u;
 const uint MOST_SAMPLES = 0xffffffu;
 
@@ -35,6 +40,11 @@ Cell unpack_cell(uvec4 words) {
 
 uvec4 pack_cell(Cell cell) {
     return uvec4(floatBitsToUint(cell.mean), cell.count | cell.age << 24);
+}
+
+/// What stands for a key in its slot: the first KEY_WORDS words.
+uvec2 words_of(CellKey key) {
+    return HPSF_KEYS == KEYS_EXACT ? exact_key(key) : uvec2(hash_fingerprint(key), 0u);
 }
 
 /// The slot that the search for a key begins at.
