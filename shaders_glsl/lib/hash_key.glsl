@@ -52,14 +52,24 @@ ivec3 cell_of(vec3 local, ivec3 steps, int log2_step, int level) {
         cell_coordinate(local.z, steps.z, log2_step, level));
 }
 
+const mat3 NORMALS_TURNED = mat3(0.7476, 0.4915, -0.4466, -0.2794, 0.8448, 0.4563, 0.6016, -0.2163, 0.7690);
+
 /// One of 2^bits cells of directions, bits 0..8.
 uint quantise_normal(vec3 n, uint bits) {
-    const mat3 turned = mat3(0.7476, 0.4915, -0.4466, -0.2794, 0.8448, 0.4563, 0.6016, -0.2163, 0.7690);
     uvec2 split = uvec2((bits + 1u) / 2u, bits / 2u);
     vec2 cells = vec2(uvec2(1u) << split);
-    vec2 p = octahedral_encode(turned * n) * 0.5 + 0.5;
+    vec2 p = octahedral_encode(NORMALS_TURNED * n) * 0.5 + 0.5;
     uvec2 q = uvec2(clamp(p * cells, vec2(0.0), cells - 1.0));
     return q.x | q.y << split.x;
+}
+
+/// The middle of a cell of directions.
+vec3 middle_of_normals(uint normal, uint bits) {
+    uvec2 split = uvec2((bits + 1u) / 2u, bits / 2u);
+    uvec2 cells = uvec2(1u) << split;
+    vec2 q = vec2(normal & (cells.x - 1u), normal >> split.x) + 0.5;
+    // Nearly a rotation: its transpose inverts it up to the length.
+    return normalize(octahedral_decode(q / vec2(cells) * 2.0 - 1.0) * NORMALS_TURNED);
 }
 
 /// The cell of the next coarser level that this one is part of.
@@ -100,6 +110,12 @@ uint hash_fingerprint(CellKey key) {
     hash = (hash ^ hash >> 16) * 0x85ebca6bu;
     hash = (hash ^ hash >> 13) * 0xc2b2ae35u;
     return max(hash ^ hash >> 16, 1u);
+}
+
+/// As `hash_fingerprint`, of the key without its normal, shortened for the normal's `bits`, which follow as they are: the low ones.
+uint fingerprint_with_normal(CellKey key, uint bits) {
+    uint rest = hash_fingerprint(CellKey(key.cell, key.level, 0u)) << bits;
+    return (rest == 0u ? 1u << bits : rest) | key.normal;
 }
 
 /// All of a key in two words, neither of them zero: coordinates modulo 2^16, the level modulo 64, 8 bits of normal. It tells keys apart that

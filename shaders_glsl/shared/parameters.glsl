@@ -59,8 +59,8 @@ layout(constant_id = 131) const uint HPSF_TABLE = 0;
 //@ hpsf.time integrate frame|average|integrate
 /// What a cell knows: this frame's samples, an exponential moving average, or the mean over up to hpsf.samples samples.
 layout(constant_id = 132) const uint HPSF_TIME = 2;
-//@ hpsf.normals key key|fingerprint
-/// Quantised normals are part of both hashes, or of the fingerprint alone, so that all normals of one place are near each other in the table.
+//@ hpsf.normals key key|fingerprint|similar
+/// Quantised normals are part of both hashes, or of the fingerprint alone, so that all normals of one place are near each other in the table. Similar: the latter, and cells with fewer samples than hpsf.few take in those at their place whose normals are no more than hpsf.similar away; less noise on curved surfaces, and flatter shading.
 layout(constant_id = 133) const uint HPSF_NORMALS = 0;
 //@ hpsf.jitter_by hash hash|sampler
 /// Numbers that jitter positions and normals: independent, or of the path's sample sequence.
@@ -72,8 +72,14 @@ layout(constant_id = 135) const uint HPSF_NEIGHBOURS = 0;
 /// New cells begin with what cells of the neighbouring levels know, when the camera has moved. Off: they begin with nothing.
 layout(constant_id = 136) const uint HPSF_SEED = 1;
 //@ hpsf.keys fingerprint fingerprint|exact
-/// What tells the table's keys apart: a hash of 32 bits, or 64 bits that hold all of the key. Exact never takes one cell for another; 4 bytes more a cell (8 swapped), and another word read with each that matches.
+/// What tells the table's keys apart: a hash of 32 bits, or 64 bits that hold all of the key where insertion is not ordered. Exact never takes one cell for another; 4 bytes more a cell (8 swapped), and another word read with each that matches.
 layout(constant_id = 138) const uint HPSF_KEYS = 0;
+//@ hpsf.insertion first first|ordered
+/// Which keys get slots where a table is full: those that come first, or those that a fixed order prefers, the same in every run. Ordered costs a pass over pixels, and leaves fingerprints 20 bits.
+layout(constant_id = 139) const uint HPSF_INSERTION = 0;
+//@ hpsf.eviction age age|priority
+/// Cells leave the table when no sample has touched them for hpsf.age frames; by priority, also before, where new ones find no slot: those of few samples and long untouched first. Insertion is ordered then. Costs another pass over pixels.
+layout(constant_id = 140) const uint HPSF_EVICTION = 0;
 //@ hpsf.temporal off off|on
 /// Pictures of earlier frames, moved by motion vectors, are averaged with this one: antialiasing with frame.jitter, less noise in what is not filtered; lag. Costs a primary ray and a pass.
 layout(constant_id = 137) const uint HPSF_TEMPORAL = 0;
@@ -119,6 +125,9 @@ struct Parameters {
     //@ hpsf.normal_jitter 0 0..2 cells
     /// Normals are tilted by up to so much of their quantisation.
     float hpsf_normal_jitter;
+    //@ hpsf.similar 30 1..180 degrees
+    /// Largest angle between a normal and the middle of another cell's normals, for hpsf.normals=similar. 180: all normals of a place.
+    float hpsf_similar;
     //@ hpsf.lookups 1 0..8 cells
     /// Cells that a pixel's radiance is the mean of, each found by a jitter of its own; 0: the cell that the pixel's sample went to. More remove the jitter's noise, at one lookup each.
     uint hpsf_lookups;

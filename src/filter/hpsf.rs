@@ -3,7 +3,7 @@
 //! Takes the diffuse terms and their filter vertices; returns `diffuse`, the mean over a cell of the world, and puts out `hpsf_samples`, the
 //! samples that it is over (0: unfiltered). History: the table, persistent or swapped with every frame.
 //!
-//! Three passes. collect: each pixel's sample into a cell, 56 bytes read per pixel, and per level 4 bytes of key (exact: 8) read and 28
+//! Three passes, and before them up to two that give slots in a fixed order (24 bytes of vertex and 4 of key read per pixel and level). collect: each pixel's sample into a cell, 56 bytes read per pixel, and per level 4 bytes of key (exact: 8) read and 28
 //! (float: 16) of sums updated. merge: over slots, 4 bytes read each, and for those taken 32 (16) of sums, 16 of seed and 16 of
 //! mean. resolve: 56 bytes read and 20 written per pixel, 20 read per lookup and level. Where one of [`STATISTICS`] is asked for, a
 //! fourth pass puts out what became of the insertions, and a fifth before it whose keys the slots hold.
@@ -35,6 +35,10 @@ pub struct Options {
     pub swapped: bool,
     /// Keys of two words that hold all of the key, not a hash of it.
     pub exact_keys: bool,
+    /// Slots are given in a fixed order, before samples are added; keys are not exact then.
+    pub ordered: bool,
+    /// Keys without a slot take those of cells that nobody has touched; `ordered` then.
+    pub evicts: bool,
     /// Float atomics, where the device has them.
     pub float_sums: bool,
     /// Put out [`STATISTICS`].
@@ -66,6 +70,9 @@ pub fn add(frame: &mut FrameBuilder, terms: &Terms, options: Options) -> Result<
     if options.swapped {
         frame.fill("hpsf clear", table.keys.current, 0);
     }
+    if options.ordered || options.evicts {
+        table.give_slots(frame, terms, options.evicts)?;
+    }
     table.collect(frame, terms)?;
     table.merge(frame)?;
     if options.statistics {
@@ -84,7 +91,11 @@ impl Table {
         let most = frame.gpu().capabilities().max_storage_buffer_range / sums;
         let wanted = (f64::from(frame.pixels()) * options.cells_per_pixel).ceil() as u64;
         let capacity = wanted.clamp(64, most.min(u32::MAX.into()));
-        let key_bytes = if options.exact_keys { 2 * WORD } else { WORD };
+        let exact_keys = options.exact_keys && !(options.ordered || options.evicts);
+        if exact_keys != options.exact_keys {
+            tracing::warn!("hpsf.keys=exact is for hpsf.insertion=first: fingerprints are used");
+        }
+        let key_bytes = if exact_keys { 2 * WORD } else { WORD };
         Ok(Self {
             capacity: capacity as u32,
             keys: kept(frame, "hpsf keys", capacity * key_bytes, options.swapped)?,
@@ -95,6 +106,17 @@ impl Table {
             float_sums,
             insertions: u64::from(frame.pixels()) * u64::from(options.levels),
         })
+    }
+
+    fn give_slots(&self, frame: &mut FrameBuilder, terms: &Terms, evicts: bool) -> Result<(), GpuError> {
+        let touched = self.insertions * self.key_bytes;
+        let pass = reads_vertices(frame.pass("hpsf claim", "filter/hpsf/claim_ordered"), terms).constant(CAPACITY, self.capacity);
+        pass.updates("keys", self.keys.current).touching(touched).add()?;
+        if evicts {
+            let pass = reads_vertices(frame.pass("hpsf evict", "filter/hpsf/evict"), terms).constant(CAPACITY, self.capacity);
+            pass.updates("keys", self.keys.current).touching(touched).writes("cells", self.cells.current).touching(0).add()?;
+        }
+        Ok(())
     }
 
     fn collect(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {

@@ -38,6 +38,8 @@ fn table(options: PassOptions) -> Options {
         cells_per_pixel: number("hpsf.cells"),
         levels: number("hpsf.levels") as u32,
         swapped: number("hpsf.table") == 1.0,
+        ordered: number("hpsf.insertion") == 1.0,
+        evicts: number("hpsf.eviction") == 1.0,
         exact_keys: number("hpsf.keys") == 1.0,
         float_sums: number("hpsf.sums") == 1.0,
         statistics: options.wants(&hpsf::STATISTICS),

@@ -106,6 +106,33 @@ fn hashes_differ_across_negative_coordinates_levels_and_normals() {
     }
 }
 
+const MIDDLES: &str = r#"
+#include "lib/hash_key.glsl"
+struct In { uint bits; uint normal; };
+struct Out { uint normal; vec3 middle; };
+void kernel(uint i) {
+    vec3 middle = middle_of_normals(inputs[i].normal, inputs[i].bits);
+    outputs[i] = Out(quantise_normal(middle, inputs[i].bits), middle);
+}
+"#;
+
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Middle {
+    normal: u32,
+    middle: [f32; 3],
+}
+
+#[test]
+fn the_middle_of_a_cell_of_normals_is_a_unit_vector_in_it() {
+    let cells: Vec<[u32; 2]> = (0..=8).flat_map(|bits| (0..1 << bits).map(move |normal| [bits, normal])).collect();
+    let middles: Vec<Middle> = common::run_kernel(&common::gpu(), MIDDLES, &cells);
+    for ([bits, normal], Middle { normal: found, middle }) in cells.into_iter().zip(middles) {
+        let length = middle.iter().map(|x| x * x).sum::<f32>().sqrt();
+        assert!(found == normal && (length - 1.0).abs() < 1e-3, "{normal} of {bits} bits: {found}, {middle:?}");
+    }
+}
+
 const EXACT: &str = r#"
 #include "lib/hash_key.glsl"
 struct In { ivec3 cell; int level; uint normal; };

@@ -64,6 +64,73 @@ fn fingerprints_give_the_picture_of_exact_keys() {
     }
 }
 
+/// What is in a cell does not depend on its slot.
+#[test]
+fn where_there_is_room_for_all_keys_their_order_does_not_matter() {
+    let gpu = common::gpu();
+    let picture = |values: &[(&str, &str)]| {
+        let settings = with(&[&[("hpsf.cells", "8"), ("hpsf.normal_bits", "0")], values].concat());
+        bits(&render_frames(&gpu, &builtin("hall-flight"), &settings, "hpsf", 4).picture().unwrap())
+    };
+    for table in ["persistent", "swapped"] {
+        let first = picture(&[("hpsf.table", table)]);
+        assert_eq!(first, picture(&[("hpsf.table", table), ("hpsf.insertion", "ordered")]), "{table}");
+        assert_eq!(first, picture(&[("hpsf.table", table), ("hpsf.eviction", "priority")]), "{table}");
+    }
+}
+
+/// 64 slots for hundreds of cells of a camera that moves.
+#[test]
+fn an_ordered_table_gives_the_same_bits_in_every_run_also_when_it_is_full() {
+    let gpu = common::gpu();
+    let tiny = [("hpsf.cells", "0.02"), ("hpsf.width", "4"), ("hpsf.probes", "4")];
+    for switch in [("hpsf.insertion", "ordered"), ("hpsf.eviction", "priority")] {
+        for table in ["persistent", "swapped"] {
+            let mut settings = with(&[&tiny[..], &[switch, ("hpsf.table", table)]].concat());
+            settings.outputs = vec!["hpsf_failed".to_owned()];
+            let [a, b] = [0, 1].map(|_| render_frames(&gpu, &builtin("hall-flight"), &settings, "hpsf", 3));
+            assert_eq!(bits(&a.picture().unwrap()), bits(&b.picture().unwrap()), "{switch:?}, {table}");
+            let failed = output(&a, "hpsf_failed").pixels.iter().filter(|pixel| pixel[0] > 0.0).count();
+            assert!(failed > 200, "{switch:?}, {table}: {failed} pixels have failed insertions");
+        }
+    }
+}
+
+/// A table that cells of earlier frames fill up, which are long out of sight: new ones take their slots.
+#[test]
+fn cells_out_of_sight_give_way_by_priority() {
+    let gpu = common::gpu();
+    let failures = |eviction: &str| {
+        let mut settings = with(&[("hpsf.age", "254"), ("hpsf.cells", "0.7"), ("hpsf.width", "6"), ("hpsf.eviction", eviction)]);
+        settings.outputs = vec!["hpsf_failed".to_owned()];
+        let renderer = render_frames(&gpu, &builtin("hall-flight"), &settings, "hpsf", 24);
+        output(&renderer, "hpsf_failed").pixels.iter().map(|pixel| pixel[0]).sum::<f32>()
+    };
+    let (kept, evicted) = (failures("age"), failures("priority"));
+    assert!(kept > 100.0 && evicted < 0.25 * kept, "{kept} insertions fail, and {evicted}");
+}
+
+/// With all normals of a place taken in, cells are what they are without normals in the key, whose number at a place is 16.
+#[test]
+fn cells_of_all_similar_normals_are_those_without_normals() {
+    let gpu = common::gpu();
+    let scene = builtin("cornell-object");
+    let all = [("hpsf.seed", "off"), ("hpsf.cells", "8"), ("hpsf.probes", "64"), ("hpsf.few", "100000")];
+    let own = [&all[..], &[("hpsf.lookups", "0"), ("hpsf.levels", "1")]].concat();
+    for keys in [("hpsf.keys", "fingerprint"), ("hpsf.keys", "exact"), ("hpsf.insertion", "ordered")] {
+        let rendered = |values: &[(&str, &str)]| render_frames(&gpu, &scene, &with(&[&own[..], &[keys], values].concat()), "hpsf", 2);
+        let merged = rendered(&[("hpsf.normals", "similar"), ("hpsf.similar", "180"), ("hpsf.normal_bits", "4")]);
+        let plain = rendered(&[("hpsf.normal_bits", "0")]);
+        let apart = rendered(&[("hpsf.normals", "similar"), ("hpsf.similar", "1"), ("hpsf.normal_bits", "4")]);
+        let samples = |renderer| output(renderer, "hpsf_samples");
+        assert_eq!(bits(&samples(&merged)), bits(&samples(&plain)), "{keys:?}");
+        assert_ne!(bits(&samples(&merged)), bits(&samples(&apart)), "{keys:?}");
+        let pairs = output(&merged, "diffuse").pixels.into_iter().zip(output(&plain, "diffuse").pixels);
+        let far = pairs.filter(|(a, b)| (0..3).any(|c| (a[c] - b[c]).abs() > 1e-5 * b[c].abs().max(1e-3))).count();
+        assert_eq!(far, 0, "{keys:?}: {far} pixels differ");
+    }
+}
+
 /// 64 slots for some hundreds of cells: the pixels that find none keep their own sample, and not one is lost.
 #[test]
 fn a_full_table_leaves_pixels_unfiltered_and_darkens_nothing() {

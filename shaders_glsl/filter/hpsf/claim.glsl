@@ -14,14 +14,8 @@
 
 #include "filter/hpsf/table.glsl"
 
-/// A slot, and whether this thread is the one that claimed it.
-struct Claim {
-    uint slot;
-    bool is_new;
-};
-
-bool holds_own(uint slot, uvec2 words) {
-    return keys.at[KEY_WORDS * slot] == words.x && (KEY_WORDS == 1u || keys.at[KEY_WORDS * slot + 1u] == words.y);
+bool is_here(uint slot, uvec2 words) {
+    return (keys.at[KEY_WORDS * slot] & KEY_MASK) == words.x && (!EXACT || keys.at[KEY_WORDS * slot + 1u] == words.y);
 }
 
 /// What a word held; it holds `own` now if that was nothing.
@@ -30,28 +24,31 @@ uint claim_word(uint at, uint own) {
     return held == NO_FINGERPRINT ? atomicCompSwap(keys.at[at], NO_FINGERPRINT, own) : held;
 }
 
-/// The slot of a key, claimed where it is new; NO_SLOT where all probes are taken.
-Claim find_or_claim(CellKey key) {
+/// The slot of a key, claimed where it is new; NO_SLOT where all probes are taken, or slots have been given (filter/hpsf/ordered.glsl).
+uint find_or_claim(CellKey key) {
     uvec2 words = words_of(key);
     uint home = home_slot(key);
     for (uint i = 0u; i < parameters.hpsf_probes; i++) {
-        if (holds_own(probe(home, i), words)) {
-            return Claim(probe(home, i), false);
+        if (is_here(probe(home, i), at_distance(words, i))) {
+            return probe(home, i);
         }
+    }
+    if (ORDERED) {
+        return NO_SLOT;
     }
     for (uint i = 0u; i < parameters.hpsf_probes; i++) {
         uint slot = probe(home, i);
         uint last = 0u;
         uint held = claim_word(KEY_WORDS * slot, words.x);
-        if (KEY_WORDS == 2u && (held == NO_FINGERPRINT || held == words.x)) {
+        if (EXACT && (held == NO_FINGERPRINT || held == words.x)) {
             last = 1u;
             held = claim_word(KEY_WORDS * slot + 1u, words.y);
         }
         if (last + 1u == KEY_WORDS && (held == NO_FINGERPRINT || held == words[last])) {
-            return Claim(slot, held == NO_FINGERPRINT);
+            return slot;
         }
     }
-    return Claim(NO_SLOT, false);
+    return NO_SLOT;
 }
 
 #endif

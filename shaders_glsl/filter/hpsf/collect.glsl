@@ -1,9 +1,9 @@
 // Adds each pixel's radiance behind its filter vertex to a cell: Binder, section 3.2; Meijer, algorithm 4.
 //
-// With hpsf.levels, the sample is added to as many ever coarser cells (Binder, 3.3.2). Whoever claims a slot also writes what earlier
-// frames know of the cell, in `seeds`: with swapped tables its mean so far; else, and where it is new, that of cells of neighbouring
-// levels (Binder, 3.4.2), which a camera that has moved left behind: the finer ones are added up, or the coarser one counts with a
-// damped weight, a quarter of its samples by area times hpsf.seed_weight.
+// With hpsf.levels, the sample is added to as many ever coarser cells (Binder, 3.3.2). Whoever is the first of a frame at a cell that
+// nothing is known of also writes what it begins with, in `seeds`: with swapped tables its mean so far; else, and where it is new, that of
+// cells of neighbouring levels (Binder, 3.4.2), which a camera that has moved left behind: the finer ones are added up, or the coarser
+// one counts with a damped weight, a quarter of its samples by area times hpsf.seed_weight.
 #include "filter/hpsf/cell.glsl"
 #include "filter/hpsf/find.glsl"
 #include "lib/colour.glsl"
@@ -21,8 +21,8 @@ layout(set = 1, binding = 8, scalar) readonly buffer KnownKeys { uint at[]; } kn
 
 #include "filter/hpsf/claim.glsl"
 
-/// Adds a sample to a slot's sums. `dither`: in [0, 1). Defined by the kernel.
-void add_sample(uint slot, vec3 radiance, float dither);
+/// Adds a sample to a slot's sums; whether it is the frame's first there. `dither`: in [0, 1). Defined by the kernel.
+bool add_sample(uint slot, vec3 radiance, float dither);
 
 uint key_word(uint at) {
     return HPSF_TABLE == TABLE_SWAPPED ? known_keys.at[at] : keys.at[at];
@@ -53,13 +53,9 @@ Cell seed_of(CellKey key) {
     return known;
 }
 
-/// The slot of a key, with a seed where it is new.
-uint slot_for(CellKey key) {
-    Claim claim = find_or_claim(key);
-    if (claim.is_new) {
-        seeds.at[claim.slot] = pack_cell(HPSF_TIME == TIME_FRAME ? EMPTY_CELL : seed_of(key));
-    }
-    return claim.slot;
+/// Nothing is in the slot's cell so far.
+bool is_unknown(uint slot) {
+    return HPSF_TABLE == TABLE_SWAPPED || unpack_cell(known_cells.at[slot]).count == 0u;
 }
 
 void collect_pixel() {
@@ -78,9 +74,14 @@ void collect_pixel() {
     vec4 numbers = jitter_numbers(uvec2(pixel), 0u);
     float dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
     for (uint level = 0u; level < parameters.hpsf_levels; level++) {
-        uint slot = slot_for(key_of(point, numbers, int(level)));
-        if (slot != NO_SLOT) {
-            add_sample(slot, clamp(radiance, vec3(0.0), vec3(parameters.hpsf_largest)), dither);
+        CellKey key = key_of(point, numbers, int(level));
+        uint slot = find_or_claim(key);
+        if (slot == NO_SLOT) {
+            continue;
+        }
+        bool first = add_sample(slot, clamp(radiance, vec3(0.0), vec3(parameters.hpsf_largest)), dither);
+        if (first && HPSF_TIME != TIME_FRAME && is_unknown(slot)) {
+            seeds.at[slot] = pack_cell(seed_of(key));
         }
     }
 }

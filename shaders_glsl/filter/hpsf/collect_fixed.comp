@@ -8,7 +8,7 @@ layout(set = 1, binding = 9, scalar) buffer Sums { uint at[]; } sums;
 
 #include "filter/hpsf/collect.glsl"
 
-void add_sample(uint slot, vec3 radiance, float dither) {
+bool add_sample(uint slot, vec3 radiance, float dither) {
     for (uint channel = 0u; channel < 3u; channel++) {
         uvec2 units = to_fixed(radiance[channel], dither);
         uint at = 8u * slot + 2u * channel;
@@ -18,7 +18,7 @@ void add_sample(uint slot, vec3 radiance, float dither) {
             atomicAdd(sums.at[at + 1u], high);
         }
     }
-    atomicAdd(sums.at[8u * slot + 6u], 1u);
+    return atomicAdd(sums.at[8u * slot + 6u], 1u) == 0u;
 }
 
 void main() {

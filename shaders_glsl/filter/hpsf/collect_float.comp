@@ -8,11 +8,11 @@ layout(set = 1, binding = 9, scalar) buffer Sums { float at[]; } sums;
 
 #include "filter/hpsf/collect.glsl"
 
-void add_sample(uint slot, vec3 radiance, float dither) {
+bool add_sample(uint slot, vec3 radiance, float dither) {
     for (uint channel = 0u; channel < 3u; channel++) {
         atomicAdd(sums.at[4u * slot + channel], radiance[channel]);
     }
-    atomicAdd(sums.at[4u * slot + 3u], 1.0);
+    return atomicAdd(sums.at[4u * slot + 3u], 1.0) == 0.0;
 }
 
 void main() {

@@ -5,7 +5,7 @@
 // is what is added, so the count may stop at its limit without stalling the mean. Cells that no sample has touched for more than hpsf.age
 // frames are evicted (section 3.4.3); with swapped tables, or frame, at once (Meijer, section 4.2.2).
 #include "filter/hpsf/fixed_point.glsl"
-#include "filter/hpsf/table.glsl"
+#include "filter/hpsf/ordered.glsl"
 #include "lib/colour.glsl"
 #include "lib/elements.glsl"
 
@@ -44,6 +44,13 @@ float alpha_of(uint old_count, uint new_count) {
     return HPSF_TIME == TIME_AVERAGE ? parameters.hpsf_alpha : float(old_count) / (float(old_count) + float(new_count));
 }
 
+void store(uint slot, Cell cell) {
+    cells.at[slot] = pack_cell(cell);
+    if (ORDERED) {
+        keys.at[slot] = old_word(keys.at[slot], cell);
+    }
+}
+
 void main() {
     uint slot = element_index();
     if (slot >= CAPACITY || keys.at[KEY_WORDS * slot] == NO_FINGERPRINT) {
@@ -54,7 +61,7 @@ void main() {
     if (new.count == 0u) {
         bool evicted = HPSF_TIME == TIME_FRAME || old.age >= parameters.hpsf_age;
         old.age++;
-        cells.at[slot] = evicted ? uvec4(0u) : pack_cell(old);
+        store(slot, evicted ? EMPTY_CELL : old);
         if (evicted) {
             for (uint word = 0u; word < KEY_WORDS; word++) {
                 keys.at[KEY_WORDS * slot + word] = NO_FINGERPRINT;
@@ -62,11 +69,11 @@ void main() {
         }
         return;
     }
-    if (old.count == 0u) {
+    if (old.count == 0u && HPSF_TIME != TIME_FRAME) {
         old = unpack_cell(seeds.at[slot]);
     }
     uint known = min(old.count, parameters.hpsf_samples);
     vec3 mean = old.mean + (1.0 - alpha_of(known, new.count)) * (new.mean - old.mean);
     uint count = min((HPSF_TIME == TIME_FRAME ? 0u : known) + new.count, MOST_SAMPLES);
-    cells.at[slot] = pack_cell(Cell(all_finite(mean) ? mean : new.mean, count, 0u));
+    store(slot, Cell(all_finite(mean) ? mean : new.mean, count, 0u));
 }

@@ -1,9 +1,9 @@
 // Looks up each pixel's filtered radiance: Binder, algorithm 1; Meijer, algorithm 5.
 //
 // The pixel reads the cell that its own sample went to, or the mean of hpsf.lookups cells, found by as many further jitters: more of them
-// leave less of the jitter's noise. A cell of fewer samples than hpsf.few is helped out by its neighbours in the tangent plane (Binder,
-// 3.3.1), or by the next coarser level that has enough (3.3.2). Where the sample's insertion failed, the pixel shows its own
-// radiance unfiltered, and `hpsf_samples` is 0.
+// leave less of the jitter's noise. A cell of fewer samples than hpsf.few is helped out by cells of similar normals at its place (Binder,
+// 3.2.2), by its neighbours in the tangent plane (3.3.1), or by the next coarser level that has enough (3.3.2). Where the sample's
+// insertion failed, the pixel shows its own radiance unfiltered, and `hpsf_samples` is 0.
 #include "filter/hpsf/cell.glsl"
 #include "filter/hpsf/find.glsl"
 #include "lib/storage.glsl"
@@ -30,6 +30,18 @@ Cell cell_of_key(CellKey key) {
     return slot == NO_SLOT ? EMPTY_CELL : unpack_cell(cells.at[slot]);
 }
 
+/// With the cells of the same place whose normals are similar (Binder, section 3.2.2, figure 7c).
+Cell with_similar(Cell cell, CellKey key, vec3 normal) {
+    uvec2 words = words_of(key);
+    uint home = home_slot(key);
+    for (uint i = 0u; i < parameters.hpsf_probes; i++) {
+        if (holds_similar(probe(home, i), at_distance(words, i), normal)) {
+            cell = add_cells(cell, unpack_cell(cells.at[probe(home, i)]));
+        }
+    }
+    return cell;
+}
+
 /// With the eight cells around it in the tangent plane.
 Cell with_neighbours(Cell cell, FilterPoint point, vec4 numbers, int coarser) {
     Basis basis = basis_around(point.normal);
@@ -49,7 +61,11 @@ Cell with_neighbours(Cell cell, FilterPoint point, vec4 numbers, int coarser) {
 Cell look_up(FilterPoint point, vec4 numbers) {
     Cell best = EMPTY_CELL;
     for (uint level = 0u; level < parameters.hpsf_levels && best.count < max(parameters.hpsf_few, 1u); level++) {
-        Cell cell = cell_of_key(key_of(point, numbers, int(level)));
+        CellKey key = key_of(point, numbers, int(level));
+        Cell cell = cell_of_key(key);
+        if (HPSF_NORMALS == NORMALS_SIMILAR && cell.count < parameters.hpsf_few) {
+            cell = with_similar(cell, key, point.normal);
+        }
         if (HPSF_NEIGHBOURS == 1u && cell.count < parameters.hpsf_few) {
             cell = with_neighbours(cell, point, numbers, int(level));
         }

@@ -12,14 +12,23 @@ layout(constant_id = 221) const uint CAPACITY = 1;
 
 const uint KEYS_FINGERPRINT = 0u;
 const uint KEYS_EXACT = 1u;
+const uint NORMALS_KEY = 0u;
+const uint NORMALS_SIMILAR = 2u;
 const uint TIME_FRAME = 0u;
 const uint TIME_AVERAGE = 1u;
 const uint TIME_INTEGRATE = 2u;
 const uint TABLE_PERSISTENT = 0u;
 const uint TABLE_SWAPPED = 1u;
 
+/// Slots are given in a fixed order (filter/hpsf/ordered.glsl), in which words of a slot differ by more than the key.
+const bool ORDERED = HPSF_INSERTION == 1u || HPSF_EVICTION == 1u;
+const bool EXACT = HPSF_KEYS == KEYS_EXACT && !ORDERED;
 /// Of a slot in the buffer of keys. Zero: an empty slot.
-const uint KEY_WORDS = HPSF_KEYS == KEYS_EXACT ? 2u : 1u;
+const uint KEY_WORDS = EXACT ? 2u : 1u;
+/// Bits of a slot's first word that tell its key.
+const uint KEY_MASK = ORDERED ? 0x03ffffffu : ~0u;
+/// Lowest bits of an ordered word: how far from home the key is.
+const uint DISTANCE_BITS = 6u;
 const uint NO_SLOT = ~0u;
 const uint MOST_SAMPLES = 0xffffffu;
 
@@ -42,16 +51,43 @@ uvec4 pack_cell(Cell cell) {
     return uvec4(floatBitsToUint(cell.mean), cell.count | cell.age << 24);
 }
 
-/// What stands for a key in its slot: the first KEY_WORDS words.
+/// What stands for a key in its home slot: the first KEY_WORDS words, under KEY_MASK.
 uvec2 words_of(CellKey key) {
-    return HPSF_KEYS == KEYS_EXACT ? exact_key(key) : uvec2(hash_fingerprint(key), 0u);
+    if (EXACT) {
+        return exact_key(key);
+    }
+    uint normal_bits = HPSF_NORMALS == NORMALS_KEY ? 0u : parameters.hpsf_normal_bits;
+    uint fingerprint = normal_bits == 0u ? hash_fingerprint(key) : fingerprint_with_normal(key, normal_bits);
+    if (!ORDERED) {
+        return uvec2(fingerprint, 0u);
+    }
+    fingerprint <<= DISTANCE_BITS;
+    fingerprint &= KEY_MASK;
+    return uvec2(fingerprint == 0u ? 1u << (DISTANCE_BITS + normal_bits) : fingerprint, 0u);
+}
+
+/// The same `distance` slots further.
+uvec2 at_distance(uvec2 words, uint distance) {
+    return ORDERED ? uvec2(words.x | distance, 0u) : words;
+}
+
+/// Which bits of words are the normal, where hpsf.normals is fingerprint.
+uvec2 normal_mask() {
+    uint mask = (1u << parameters.hpsf_normal_bits) - 1u;
+    return EXACT ? uvec2(0u, 0xffu << 23) : uvec2(ORDERED ? mask << DISTANCE_BITS : mask, 0u);
+}
+
+uint normal_of(uvec2 words) {
+    words &= normal_mask();
+    return EXACT ? words.y >> 23 : ORDERED ? words.x >> DISTANCE_BITS : words.x;
 }
 
 /// The slot that the search for a key begins at.
 uint home_slot(CellKey key) {
-    return hash_slot(hash_index(key, HPSF_NORMALS == 0u), CAPACITY);
+    return hash_slot(hash_index(key, HPSF_NORMALS == NORMALS_KEY), CAPACITY);
 }
 
+/// Slot number `distance` of a search.
 uint probe(uint home, uint distance) {
     uint slot = home + distance;
     return slot < CAPACITY ? slot : slot - CAPACITY;
