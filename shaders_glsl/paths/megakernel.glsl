@@ -10,32 +10,16 @@
 /// Tiles of 8x4 pixels that a workgroup of 32 threads works off.
 layout(constant_id = 201) const uint TILES = 1;
 
-/// Pixel of a thread of 32 in the group's tile `turn`; tiles of 8x4 pixels go along the rows of the picture.
-uvec2 pixel_of(uint group, uint thread, uint turn) {
-    uint tiles = (frame.extent.x + 7u) / 8u;
-    uint tile = group * TILES + turn;
-    return uvec2(tile % tiles, tile / tiles) * uvec2(8u, 4u) + uvec2(thread % 8u, thread / 8u);
-}
-
 /// The thread's pixel in tile `turn` or the first one after it that lies in the picture; false where there is none.
 bool find_pixel(uint group, uint thread, inout uint turn, out uvec2 pixel) {
     for (; turn < TILES; turn++) {
-        pixel = pixel_of(group, thread, turn);
+        pixel = pixel_in_tile(group * TILES + turn, thread);
         if (all(lessThan(pixel, frame.extent))) {
             return true;
         }
     }
     return false;
 }
-
-/// Scattered rays in the low, shadow rays in the high 16 bits.
-uint pack_counts(uvec2 counts) {
-    uvec2 most = min(counts, 0xffffu);
-    return most.x | most.y << 16;
-}
-
-/// Paths of a pixel in this frame. Defined by the kernel.
-uint samples_of(uvec2 pixel);
 
 /// Takes a pixel's result, a sum over `samples`; `counts`: its scattered rays and shadow rays. Defined by the kernel.
 void write_pixel(uvec2 pixel, Terms terms, uint samples, uvec2 counts);

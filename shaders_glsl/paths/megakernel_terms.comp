@@ -18,35 +18,11 @@ layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D filter_position;
 layout(set = 1, binding = 8, r32ui) writeonly uniform uimage2D filter_normal;
 layout(set = 1, binding = 9, r32ui) writeonly uniform uimage2D filter_incident;
 
-/// How far a camera without mirrors would see the vertex, measured along its view: reflections keep the angle between a ray and the view
-/// direction that they mirror along with it.
-float view_plane_distance(uvec2 pixel, float travelled) {
-    return travelled * dot(primary_ray(pixel, frame.jitter).direction, frame.camera.forward);
-}
+#include "paths/write_terms.glsl"
 
-/// A sample with a value that is not a number is no sample: it must not enter a history.
-vec4 finite_or_black(vec3 value) {
-    bool finite = !any(isnan(value)) && !any(isinf(value));
-    return storable(vec4(finite ? value : vec3(0.0), finite ? 1.0 : 0.0));
-}
-
-uint samples_of(uvec2 pixel) {
-    return 1u;
-}
-
-void write_pixel(uvec2 at, Terms terms, uint samples, uvec2 counts) {
-    ivec2 pixel = ivec2(at);
-    imageStore(before, pixel, finite_or_black(terms.before));
-    imageStore(attenuation, pixel, finite_or_black(terms.attenuation));
-    imageStore(diffuse_direct, pixel, finite_or_black(received(terms.diffuse_direct, terms.attenuation)));
-    imageStore(diffuse_indirect, pixel, finite_or_black(received(terms.diffuse_indirect, terms.attenuation)));
-    imageStore(specular_direct, pixel, finite_or_black(terms.specular_direct));
-    imageStore(specular_indirect, pixel, finite_or_black(terms.specular_indirect));
-    imageStore(ray_count, pixel, uvec4(pack_counts(counts)));
-    FilterVertex vertex = terms.vertex;
-    imageStore(filter_position, pixel, vec4(vertex.position, view_plane_distance(at, vertex.travelled)));
-    imageStore(filter_normal, pixel, uvec4(vertex.travelled > 0.0 ? pack_normal(vertex.normal) : 0u));
-    imageStore(filter_incident, pixel, uvec4(vertex.travelled > 0.0 ? pack_normal(vertex.incident) : 0u));
+void write_pixel(uvec2 pixel, Terms terms, uint samples, uvec2 counts) {
+    write_terms(pixel, terms);
+    imageStore(ray_count, ivec2(pixel), uvec4(pack_counts(counts)));
 }
 
 void main() {

@@ -64,13 +64,39 @@ struct Pending {
     vec3 radiance;
 };
 
+/// Paths of a pixel in this frame. A number that is not whole is so on average over pixels and frames: which pixels take one more is
+/// independent of what they see.
+uint samples_of(uvec2 pixel) {
+#ifdef SHARED_JITTER
+    return 1u;
+#else
+    uint most = frame.samples + 1u;
+    return frame.more_samples > unit_float(pcg3d(uvec3(pixel, frame.frame ^ frame.seed)).y) ? most : frame.samples;
+#endif
+}
+
+/// Scattered rays in the low, shadow rays in the high 16 bits.
+uint pack_counts(uvec2 counts) {
+    uvec2 most = min(counts, 0xffffu);
+    return most.x | most.y << 16;
+}
+
+/// The numbers that a path is made of, from the first one on.
+Sampler path_numbers(uvec2 pixel, uint sample_index) {
+#ifdef SHARED_JITTER
+    if (SCRAMBLE == SCRAMBLE_TILE) {
+        return sampler_of_tile(pixel, sample_index, frame.seed);
+    }
+#endif
+    return sampler_begin(pixel, sample_index, frame.seed);
+}
+
 Path path_begin(uvec2 pixel, uint sample_index) {
     Path path;
+    path.numbers = path_numbers(pixel, sample_index);
 #ifdef SHARED_JITTER
-    path.numbers = SCRAMBLE == SCRAMBLE_TILE ? sampler_of_tile(pixel, sample_index, frame.seed) : sampler_begin(pixel, sample_index, frame.seed);
     vec2 offset = frame.jitter;
 #else
-    path.numbers = sampler_begin(pixel, sample_index, frame.seed);
     vec2 offset = sample_2d(path.numbers) - 0.5;
 #endif
     path.ray = primary_ray(pixel, offset);

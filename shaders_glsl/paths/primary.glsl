@@ -21,4 +21,16 @@ RayCone primary_cone() {
     return RayCone(frame.camera.pixel_width, frame.camera.pixel_spread);
 }
 
+/// Pixel of a thread of 32 in a tile; tiles of 8x4 pixels go along the rows of the picture.
+uvec2 pixel_in_tile(uint tile, uint thread) {
+    uint tiles = (frame.extent.x + 7u) / 8u;
+    return uvec2(tile % tiles, tile / tiles) * uvec2(8u, 4u) + uvec2(thread % 8u, thread / 8u);
+}
+
+/// How far a camera without mirrors would see a vertex, measured along its view: reflections keep the angle between a ray and the view
+/// direction that they mirror along with it. `travelled`: length of the path of the pixel's centre, metres.
+float view_plane_distance(uvec2 pixel, float travelled) {
+    return travelled * dot(primary_ray(pixel, frame.jitter).direction, frame.camera.forward);
+}
+
 #endif

@@ -76,4 +76,10 @@ vec3 received(vec3 diffuse, vec3 attenuation) {
     return ALBEDO == ALBEDO_DIVIDED ? stored(attenuation * diffuse) / max(attenuation, LEAST_DIVISOR) : diffuse;
 }
 
+/// What to put out. A sample with a value that is not a number is no sample: it must not enter a history.
+vec4 finite_or_black(vec3 value) {
+    bool finite = !any(isnan(value)) && !any(isinf(value));
+    return storable(vec4(finite ? value : vec3(0.0), finite ? 1.0 : 0.0));
+}
+
 #endif

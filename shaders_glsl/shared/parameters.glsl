@@ -38,6 +38,9 @@ layout(constant_id = 107) const uint TEXTURE_LEVEL = 0;
 //@ paths.scramble pixel pixel|tile
 /// What has a sample sequence of its own, where pixels take one sample a frame: each pixel, or each tile of 16x16, whose pixels share out one sequence. By tile, what a filter averages over neighbours converges like a sequence, not like chance; the same cost.
 layout(constant_id = 108) const uint SCRAMBLE = 0;
+//@ paths.kernel megakernel megakernel|wavefront
+/// Whole paths in one kernel, or a kernel for each step of all paths, with queues between them (Laine et al. 2013). The same picture; wavefront holds 196 bytes per pixel (284 for filters), and pays where rays and materials diverge on wide devices.
+layout(constant_id = 109) const uint PATHS_KERNEL = 0;
 //@ paths.albedo apart apart|divided
 /// Albedo at the filter vertex: kept apart and multiplied in after filters, or multiplied in while tracing, divided out for filters (by 0.001 at least), multiplied again. Divided loses channels of zero albedo and precision (Meijer, section 4.1).
 layout(constant_id = 120) const uint ALBEDO = 0;

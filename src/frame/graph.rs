@@ -4,9 +4,9 @@
 //! frame costs the host a few calls per pass and no memory.
 
 use super::globals::Globals;
-use super::pass::{Access, Hazards, Pass, PassBuilder, Traffic, Use, Work, label};
+use super::pass::{Access, Groups, Hazards, Pass, PassBuilder, Traffic, Use, Work, label};
 use super::resources::{BufferHandle, History, ImageHandle, Parity, Resources};
-use crate::gpu::{Commands, DescriptorSet, Gpu, GpuError, Image, ImageInfo, SetLayout, Timer, vk};
+use crate::gpu::{Commands, ComputePipeline, DescriptorSet, Gpu, GpuError, Image, ImageInfo, SetLayout, Timer, load_shader, vk};
 use shader_compiler::Precision;
 use std::sync::Arc;
 
@@ -21,6 +21,14 @@ pub struct FrameBuilder<'a> {
     pub(super) resources: Resources,
     passes: Vec<Pass>,
     hazards: Hazards,
+    pipelines: Vec<SharedPipeline>,
+}
+
+/// Passes that differ neither in kernel nor in specialization share one.
+struct SharedPipeline {
+    shader: &'static str,
+    constants: Vec<(u32, u32)>,
+    pipeline: Arc<ComputePipeline>,
 }
 
 impl<'a> FrameBuilder<'a> {
@@ -44,6 +52,7 @@ impl<'a> FrameBuilder<'a> {
             resources: Resources::default(),
             passes: Vec::new(),
             hazards: Hazards::default(),
+            pipelines: Vec::new(),
         }
     }
 
@@ -126,13 +135,35 @@ impl<'a> FrameBuilder<'a> {
         self.push(name, Work::Fill { buffer, word }, &[Use { variable: "", resource, access: Access::Write, bytes }]);
     }
 
+    /// The place of the next pass, for [`Self::repeat_per_sample`].
+    pub fn next_pass(&self) -> usize {
+        self.passes.len()
+    }
+
+    /// The next pass is all passes from `first` on once more for each further sample per pixel that a frame takes.
+    pub fn repeat_per_sample(&mut self, name: &'static str, first: usize) {
+        self.passes.push(Pass { name, label: label(name), work: Work::Repeat { first }, barrier: false, traffic: Traffic::default() });
+    }
+
+    pub(super) fn pipeline(&mut self, shader: &'static str, constants: &[(u32, u32)]) -> Result<Arc<ComputePipeline>, GpuError> {
+        if let Some(known) = self.pipelines.iter().find(|known| known.shader == shader && known.constants == constants) {
+            return Ok(known.pipeline.clone());
+        }
+        let spirv = load_shader(shader, self.structure, self.precision)?;
+        let pipeline = Arc::new(ComputePipeline::new(self.gpu, shader, &spirv, &self.globals, constants)?);
+        self.pipelines.push(SharedPipeline { shader, constants: constants.to_vec(), pipeline: pipeline.clone() });
+        Ok(pipeline)
+    }
+
     pub(super) fn push(&mut self, name: &'static str, work: Work, uses: &[Use]) {
         let barrier = self.hazards.needs_barrier(uses);
         self.passes.push(Pass { name, label: label(name), work, barrier, traffic: Traffic::of(uses) });
     }
 
     pub fn build(self) -> FrameGraph {
-        FrameGraph { resources: self.resources, passes: self.passes, parity: 0, reset: true }
+        let indirect = |pass: &Pass| matches!(pass.work, Work::Dispatch { groups: Groups::Indirect(..), .. });
+        let reads = if self.passes.iter().any(indirect) { vk::PipelineStageFlags::DRAW_INDIRECT } else { vk::PipelineStageFlags::empty() };
+        FrameGraph { resources: self.resources, passes: self.passes, waiting: STAGES | reads, parity: 0, reset: true }
     }
 }
 
@@ -140,6 +171,8 @@ impl<'a> FrameBuilder<'a> {
 pub struct FrameGraph {
     resources: Resources,
     passes: Vec<Pass>,
+    /// What waits at a barrier: sizes of dispatches, too, where passes take them from buffers.
+    waiting: vk::PipelineStageFlags,
     /// Of the frame recorded last.
     parity: Parity,
     /// What is kept is made zero before the next frame.
@@ -184,28 +217,53 @@ impl FrameGraph {
     }
 
     /// All passes in order; the first waits for whatever was recorded or submitted before, builds of acceleration structures included.
-    pub fn record(&mut self, commands: &Commands, globals: &DescriptorSet, timer: &mut Timer) {
+    /// `samples`: per pixel.
+    pub fn record(&mut self, commands: &Commands, globals: &DescriptorSet, timer: &mut Timer, samples: u32) {
         self.parity ^= 1;
         timer.reset(commands);
-        commands.barrier(vk::PipelineStageFlags::ALL_COMMANDS, STAGES);
+        commands.barrier(vk::PipelineStageFlags::ALL_COMMANDS, self.waiting);
         if std::mem::take(&mut self.reset) && self.resources.keeps_anything() {
             self.resources.reset(commands);
-            commands.barrier(vk::PipelineStageFlags::TRANSFER, STAGES);
+            commands.barrier(vk::PipelineStageFlags::TRANSFER, self.waiting);
         }
         timer.mark(commands, 0);
         for (index, pass) in (1..).zip(&self.passes) {
-            commands.begin_label(&pass.label);
-            if pass.barrier {
-                commands.barrier(STAGES, STAGES);
-            }
             match &pass.work {
-                Work::Dispatch { pipeline, sets, groups } => {
-                    commands.dispatch(pipeline, &[globals, &sets[self.parity % sets.len()]], &[], *groups);
-                }
-                Work::Fill { buffer, word } => commands.fill_buffer(self.resources.buffer_of(*buffer, self.parity), *word),
+                Work::Repeat { first } => self.record_again(commands, globals, &self.passes[*first..index as usize - 1], samples),
+                _ => self.record_pass(commands, globals, pass),
             }
-            commands.end_label();
             timer.mark(commands, index);
         }
+    }
+
+    fn record_again(&self, commands: &Commands, globals: &DescriptorSet, passes: &[Pass], samples: u32) {
+        for _ in 1..samples {
+            // The first of them may write what the last ones have read.
+            commands.barrier(STAGES, self.waiting);
+            passes.iter().for_each(|pass| self.record_pass(commands, globals, pass));
+        }
+    }
+
+    fn record_pass(&self, commands: &Commands, globals: &DescriptorSet, pass: &Pass) {
+        commands.begin_label(&pass.label);
+        if pass.barrier {
+            commands.barrier(STAGES, self.waiting);
+        }
+        match &pass.work {
+            Work::Dispatch { pipeline, sets, argument, groups } => {
+                let (sets, words) = ([globals, &sets[self.parity % sets.len()]], bytemuck::bytes_of(argument));
+                let push_constants = &words[..pipeline.reflection().push_constant_size as usize];
+                match *groups {
+                    Groups::Fixed(groups) => commands.dispatch(pipeline, &sets, push_constants, groups),
+                    Groups::Indirect(buffer, offset) => {
+                        let groups = (self.resources.buffer_of(buffer, self.parity), offset);
+                        commands.dispatch_indirect(pipeline, &sets, push_constants, groups);
+                    }
+                }
+            }
+            Work::Fill { buffer, word } => commands.fill_buffer(self.resources.buffer_of(*buffer, self.parity), *word),
+            Work::Repeat { .. } => {}
+        }
+        commands.end_label();
     }
 }

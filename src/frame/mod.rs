@@ -7,5 +7,5 @@ mod resources;
 
 pub use globals::{Globals, GlobalsInfo, STRUCTURE_TEXELS, TOP_LEVEL};
 pub use graph::{FrameBuilder, FrameGraph};
-pub use pass::{PassBuilder, Traffic};
+pub use pass::{MOST_GROUPS, PassBuilder, Traffic};
 pub use resources::{BufferHandle, History, ImageHandle, Resource};

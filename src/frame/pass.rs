@@ -2,9 +2,10 @@
 
 use super::graph::FrameBuilder;
 use super::resources::{BufferHandle, Resource, Resources};
-use crate::gpu::{ComputePipeline, DescriptorSet, GpuError, load_shader};
+use crate::gpu::{ComputePipeline, DescriptorSet, GpuError};
 use shader_compiler::{Binding, BindingKind};
 use std::ffi::CString;
+use std::sync::Arc;
 
 /// A pass that is ready to be recorded.
 pub(super) struct Pass {
@@ -18,16 +19,29 @@ pub(super) struct Pass {
 
 pub(super) enum Work {
     Dispatch {
-        pipeline: ComputePipeline,
+        pipeline: Arc<ComputePipeline>,
         /// One, or one for each parity where the pass touches a history.
         sets: Vec<DescriptorSet>,
-        /// Workgroups.
-        groups: [u32; 3],
+        /// The kernel's push constant, where it has one.
+        argument: u32,
+        groups: Groups,
     },
     Fill {
         buffer: BufferHandle,
         word: u32,
     },
+    /// The passes from `first` up to this one, for each sample per pixel after the first.
+    Repeat {
+        first: usize,
+    },
+}
+
+/// Workgroups of a dispatch.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Groups {
+    Fixed([u32; 3]),
+    /// Three words of a buffer, so many bytes from its start.
+    Indirect(BufferHandle, u64),
 }
 
 /// Bytes that a pass moves by its declaration: each value of each image and buffer once, unless it declares fewer.
@@ -54,6 +68,13 @@ pub(super) struct Use {
     pub bytes: u64,
 }
 
+impl std::ops::AddAssign for Traffic {
+    fn add_assign(&mut self, other: Self) {
+        self.read += other.read;
+        self.written += other.written;
+    }
+}
+
 impl Traffic {
     pub(super) fn of(uses: &[Use]) -> Self {
         uses.iter().fold(Self::default(), |sum, one| {
@@ -70,6 +91,7 @@ pub struct PassBuilder<'b, 'a> {
     shader: &'static str,
     uses: Vec<Use>,
     constants: Vec<(u32, u32)>,
+    argument: Option<u32>,
     extent: Extent,
 }
 
@@ -78,14 +100,15 @@ enum Extent {
     Pixels,
     Elements(u32),
     Groups(u32),
+    Indirect(BufferHandle, u64),
 }
 
 /// Most workgroups along an axis that every device takes.
-const MOST_GROUPS: u32 = 65_535;
+pub const MOST_GROUPS: u32 = 65_535;
 
 impl<'b, 'a> PassBuilder<'b, 'a> {
     pub(super) fn new(frame: &'b mut FrameBuilder<'a>, name: &'static str, shader: &'static str, constants: Vec<(u32, u32)>) -> Self {
-        Self { frame, name, shader, uses: Vec::new(), constants, extent: Extent::Pixels }
+        Self { frame, name, shader, uses: Vec::new(), constants, argument: None, extent: Extent::Pixels }
     }
 
     pub fn reads(self, variable: &'static str, resource: impl Into<Resource>) -> Self {
@@ -122,6 +145,18 @@ impl<'b, 'a> PassBuilder<'b, 'a> {
         self
     }
 
+    /// The kernel's push constant, one word: what sets passes of one kernel apart that share a pipeline.
+    pub fn argument(mut self, word: u32) -> Self {
+        self.argument = Some(word);
+        self
+    }
+
+    /// As many workgroups as three words of a buffer say, `offset` bytes from its start, that earlier passes of the frame have written.
+    pub fn indirect(mut self, groups: BufferHandle, offset: u64) -> Self {
+        self.extent = Extent::Indirect(groups, offset);
+        self
+    }
+
     /// So many workgroups instead of one invocation per pixel.
     pub fn groups(mut self, count: u32) -> Self {
         self.extent = Extent::Groups(count);
@@ -142,21 +177,35 @@ impl<'b, 'a> PassBuilder<'b, 'a> {
         let frame = self.frame;
         let wrong = |message| GpuError::Interface { shader: self.shader.to_owned(), message };
         check_constants(&self.constants).map_err(wrong)?;
-        let spirv = load_shader(self.shader, frame.structure, frame.precision)?;
-        let pipeline = ComputePipeline::new(frame.gpu, self.name, &spirv, &frame.globals, &self.constants)?;
+        let pipeline = frame.pipeline(self.shader, &self.constants)?;
+        check_argument(self.argument, pipeline.reflection().push_constant_size).map_err(wrong)?;
         let bindings: Vec<&Binding> = pipeline.reflection().bindings.iter().filter(|b| b.set == 1).collect();
         check(&bindings, &self.uses).and_then(|()| check_formats(&bindings, &self.uses, &frame.resources)).map_err(wrong)?;
         let alternates = self.uses.iter().any(|one| frame.resources.alternates(one.resource));
         let set = |parity| descriptor_set(&pipeline, &bindings, &self.uses, &frame.resources, parity);
         let sets = (0..1 + usize::from(alternates)).map(set).collect::<Result<_, _>>()?;
         let groups = match self.extent {
-            Extent::Pixels => pipeline.groups([frame.extent[0], frame.extent[1], 1]),
-            Extent::Elements(count) => rows_of_groups(pipeline.groups([count, 1, 1])[0]),
-            Extent::Groups(count) => [count, 1, 1],
+            Extent::Pixels => Groups::Fixed(pipeline.groups([frame.extent[0], frame.extent[1], 1])),
+            Extent::Elements(count) => Groups::Fixed(rows_of_groups(pipeline.groups([count, 1, 1])[0])),
+            Extent::Groups(count) => Groups::Fixed([count, 1, 1]),
+            Extent::Indirect(buffer, offset) => Groups::Indirect(buffer, offset),
         };
-        frame.push(self.name, Work::Dispatch { pipeline, sets, groups }, &self.uses);
+        let mut uses = self.uses;
+        if let Groups::Indirect(buffer, _) = groups {
+            uses.push(Use { variable: "", resource: buffer.into(), access: Access::Read, bytes: INDIRECT_BYTES });
+        }
+        frame.push(self.name, Work::Dispatch { pipeline, sets, argument: self.argument.unwrap_or(0), groups }, &uses);
         Ok(())
     }
+}
+
+/// Three words.
+const INDIRECT_BYTES: u64 = 12;
+
+/// The pass's push constant against the size in bytes of the kernel's.
+fn check_argument(argument: Option<u32>, size: u32) -> Result<(), String> {
+    let given = if argument.is_some() { 4 } else { 0 };
+    if given == size { Ok(()) } else { Err(format!("it takes {size} bytes of push constants, and the pass gives it {given}")) }
 }
 
 /// At least so many workgroups, in rows that every device takes.
@@ -280,6 +329,12 @@ mod tests {
     fn an_id_stands_for_one_constant() {
         assert!(check_constants(&[(1, 0), (2, 0)]).is_ok());
         assert!(check_constants(&[(1, 0), (2, 0), (1, 0)]).unwrap_err().contains("id 1"));
+    }
+
+    #[test]
+    fn a_pass_gives_the_word_that_its_kernel_takes() {
+        assert!(check_argument(None, 0).is_ok() && check_argument(Some(7), 4).is_ok());
+        assert!(check_argument(Some(7), 0).is_err() && check_argument(None, 4).is_err() && check_argument(Some(7), 8).is_err());
     }
 
     #[test]

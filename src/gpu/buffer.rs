@@ -20,13 +20,14 @@ pub struct Buffer {
 const USAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
     vk::BufferUsageFlags::SHADER_DEVICE_ADDRESS.as_raw()
         | vk::BufferUsageFlags::STORAGE_BUFFER.as_raw()
+        | vk::BufferUsageFlags::INDIRECT_BUFFER.as_raw()
         | vk::BufferUsageFlags::TRANSFER_SRC.as_raw()
         | vk::BufferUsageFlags::TRANSFER_DST.as_raw(),
 );
 
 impl Gpu {
     /// `size` bytes (at least 16 are allocated, so that an empty array has an address), contents undefined.
-    /// Storage, transfer and device-address usage are always added to `usage`.
+    /// Storage, transfer, indirect and device-address usage are always added to `usage`.
     pub fn create_buffer(&self, name: &str, size: u64, usage: vk::BufferUsageFlags, location: MemoryLocation) -> Result<Buffer, GpuError> {
         let info = vk::BufferCreateInfo::default().size(size.max(16)).usage(usage | USAGE);
         // SAFETY: plain creation; Buffer's drop destroys what exists, also where a later step fails.

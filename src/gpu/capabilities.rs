@@ -30,6 +30,8 @@ pub struct Capabilities {
     /// Nanoseconds per timestamp tick.
     pub timestamp_period: f32,
     pub subgroup_size: u32,
+    /// In compute shaders.
+    pub subgroup_ballot: bool,
     pub max_storage_buffer_range: u64,
     pub max_workgroup_invocations: u32,
     /// Texels along one side of an image.
@@ -77,6 +79,8 @@ impl Capabilities {
             timestamps: limits.timestamp_compute_and_graphics == vk::TRUE,
             timestamp_period: limits.timestamp_period,
             subgroup_size: subgroup.subgroup_size,
+            subgroup_ballot: subgroup.supported_operations.contains(vk::SubgroupFeatureFlags::BALLOT)
+                && subgroup.supported_stages.contains(vk::ShaderStageFlags::COMPUTE),
             max_storage_buffer_range: limits.max_storage_buffer_range.into(),
             max_workgroup_invocations: limits.max_compute_work_group_invocations,
             max_image_side: limits.max_image_dimension2_d,
@@ -146,6 +150,7 @@ impl Capabilities {
             (self.float_atomics, "float32 atomic add on buffers", "fixed-point accumulation"),
             (self.int64_atomics, "64-bit atomics on buffers", "two 32-bit words"),
             (self.half_precision, "16-bit floats in shaders", "single precision"),
+            (self.subgroup_ballot, "ballots of subgroups", "only the megakernel traces paths"),
             (self.timestamps, "timestamps on compute queues", "no GPU times are reported"),
         ];
         optional.iter().filter(|(has, ..)| !has).map(|&(_, lacks, instead)| Substitute { lacks, instead }).collect()

@@ -58,6 +58,28 @@ impl<'a> Commands<'a> {
     /// # Panics
     /// If the push constants are not as long as the kernel's block.
     pub fn dispatch(&self, pipeline: &ComputePipeline, sets: &[&DescriptorSet], push_constants: &[u8], groups: [u32; 3]) {
+        self.bind(pipeline, sets, push_constants);
+        // SAFETY: everything that the kernel needs is bound.
+        unsafe { self.gpu.raw().cmd_dispatch(self.raw, groups[0], groups[1], groups[2]) };
+    }
+
+    /// Runs a kernel over as many workgroups as three words of a buffer say, `offset` bytes from its start, when its turn comes.
+    ///
+    /// # Panics
+    /// If the push constants are not as long as the kernel's block.
+    pub fn dispatch_indirect(
+        &self,
+        pipeline: &ComputePipeline,
+        sets: &[&DescriptorSet],
+        push_constants: &[u8],
+        (groups, offset): (&Buffer, u64),
+    ) {
+        self.bind(pipeline, sets, push_constants);
+        // SAFETY: everything that the kernel needs is bound; every buffer may hold sizes of dispatches.
+        unsafe { self.gpu.raw().cmd_dispatch_indirect(self.raw, groups.raw(), offset) };
+    }
+
+    fn bind(&self, pipeline: &ComputePipeline, sets: &[&DescriptorSet], push_constants: &[u8]) {
         assert_eq!(push_constants.len(), pipeline.reflection().push_constant_size as usize, "push constants of {}", pipeline.name());
         let device = self.gpu.raw();
         // SAFETY: the pipeline was built for these sets' layouts, and the push constants fill its block.
@@ -69,7 +91,6 @@ impl<'a> Commands<'a> {
             if !push_constants.is_empty() {
                 device.cmd_push_constants(self.raw, pipeline.layout(), vk::ShaderStageFlags::COMPUTE, 0, push_constants);
             }
-            device.cmd_dispatch(self.raw, groups[0], groups[1], groups[2]);
         }
     }
 

@@ -2,5 +2,36 @@
 
 pub mod energy;
 pub mod gbuffer;
-pub mod megakernel;
+mod megakernel;
 pub mod terms;
+mod wavefront;
+
+pub use wavefront::Options as WavefrontOptions;
+
+use crate::frame::{FrameBuilder, ImageHandle};
+use crate::gpu::GpuError;
+
+/// How paths are traced: `paths.kernel`. The picture is the same.
+#[derive(Debug, Clone, Copy)]
+pub enum Kernel {
+    Megakernel,
+    Wavefront(WavefrontOptions),
+}
+
+impl Kernel {
+    /// Radiance, the mean of the frame's samples per pixel.
+    pub fn add_radiance(self, frame: &mut FrameBuilder) -> Result<ImageHandle, GpuError> {
+        match self {
+            Self::Megakernel => megakernel::add(frame),
+            Self::Wavefront(options) => wavefront::add(frame, options),
+        }
+    }
+
+    /// One sample per pixel, through the same point of the pixel as the g-buffer's, its terms apart.
+    pub fn add_with_terms(self, frame: &mut FrameBuilder) -> Result<terms::Terms, GpuError> {
+        match self {
+            Self::Megakernel => megakernel::add_with_terms(frame),
+            Self::Wavefront(options) => wavefront::add_with_terms(frame, options),
+        }
+    }
+}

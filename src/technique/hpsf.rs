@@ -6,7 +6,7 @@ use crate::filter::hpsf::{self, Options};
 use crate::filter::smooth;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
-use crate::paths::{gbuffer, megakernel};
+use crate::paths::gbuffer;
 
 pub(super) const TECHNIQUE: Technique = Technique {
     name: "hpsf",
@@ -22,7 +22,7 @@ pub(super) fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<I
     let over_frames = options.parameters.number("hpsf.temporal") == 1.0;
     let wanted = over_frames || options.wants(&gbuffer::OUTPUTS);
     let gbuffer = wanted.then(|| gbuffer::add(frame)).transpose()?;
-    let terms = megakernel::add_with_terms(frame)?;
+    let terms = options.kernel().add_with_terms(frame)?;
     let filtered = hpsf::add(frame, &terms, table(options))?;
     let diffuse = smooth::add(frame, &terms.vertex, filtered, options.parameters.number("hpsf.smooth") as usize)?;
     let radiance = composite::add_filtered(frame, &terms, diffuse)?;

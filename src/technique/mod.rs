@@ -21,6 +21,7 @@ pub use timings::{BuildTimes, MemoryUse, PassTime, RayCounts, Timings};
 
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
+use crate::paths::{Kernel, WavefrontOptions};
 
 /// One way from samples to a picture.
 pub struct Technique {
@@ -63,6 +64,18 @@ impl PassOptions<'_> {
     /// Whether one of these outputs was asked for, which the technique itself may not need.
     fn wants(&self, outputs: &[&str]) -> bool {
         self.outputs.iter().any(|name| outputs.contains(&name.as_str()))
+    }
+
+    /// What traces paths.
+    fn kernel(&self) -> Kernel {
+        let number = |key| self.parameters.number(key) as u32;
+        if number("paths.kernel") == 0 {
+            return Kernel::Megakernel;
+        }
+        Kernel::Wavefront(WavefrontOptions {
+            max_bounces: number("paths.max_bounces"),
+            first_shadow_rays: number("rays.first_shadow_rays"),
+        })
     }
 }
 

@@ -4,7 +4,7 @@ use super::{PassOptions, Technique};
 use crate::display::accumulate;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
-use crate::paths::{gbuffer, megakernel};
+use crate::paths::gbuffer;
 
 pub(super) const TECHNIQUE: Technique = Technique {
     name: "reference",
@@ -21,6 +21,6 @@ fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle,
     if options.wants(&gbuffer::OUTPUTS) {
         gbuffer::add(frame)?;
     }
-    let radiance = megakernel::add(frame)?;
+    let radiance = options.kernel().add_radiance(frame)?;
     accumulate::add(frame, radiance)
 }

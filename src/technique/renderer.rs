@@ -63,7 +63,7 @@ impl Renderer {
         Ok(Self {
             ring: FrameRing::new(gpu, FRAMES_IN_FLIGHT)?,
             timers: (0..FRAMES_IN_FLIGHT).map(|_| Timer::new(gpu, graph.marks())).collect::<Result<_, _>>()?,
-            recorder: Recorder::new(graph.pass_names().collect()),
+            recorder: Recorder::new(graph.pass_names()),
             parameters: settings.parameters.fields(),
             frame: 0,
             first_frame: 0,
@@ -94,12 +94,13 @@ impl Renderer {
         self.globals.write(slot, &self.frame_data(slot), &self.parameters);
         let PreparedScene { structure, pose, .. } = &mut self.prepared;
         let (instances, graph, set, timer) = (pose.instances(), &mut self.graph, self.globals.set(slot), &mut self.timers[slot]);
+        let samples = self.samples.ceil() as u32;
         self.ring.submit(slot, |commands| {
             structure.update(commands, slot, instances);
-            graph.record(commands, set, timer);
+            graph.record(commands, set, timer, samples);
         })?;
         self.recorder.add_cpu(clock.lap());
-        self.first_sample = self.first_sample.wrapping_add(self.samples.ceil() as u32);
+        self.first_sample = self.first_sample.wrapping_add(samples);
         self.frame += 1;
         Ok(())
     }

@@ -5,7 +5,7 @@ use crate::display::composite;
 use crate::filter::sspsf;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
-use crate::paths::{gbuffer, megakernel};
+use crate::paths::gbuffer;
 
 pub(super) const TECHNIQUE: Technique = Technique {
     name: "sspsf",
@@ -21,7 +21,7 @@ fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle,
     if options.wants(&gbuffer::OUTPUTS) {
         gbuffer::add(frame)?;
     }
-    let terms = megakernel::add_with_terms(frame)?;
+    let terms = options.kernel().add_with_terms(frame)?;
     let diffuse = sspsf::add(frame, &terms)?;
     composite::add_filtered(frame, &terms, diffuse)
 }

@@ -13,8 +13,11 @@ const FRAMES_WITHOUT_ALLOCATION: usize = 1 << 16;
 /// Gathers figures frame by frame.
 #[derive(Debug, Default)]
 pub struct Recorder {
+    /// Of passes, each once.
     names: Vec<&'static str>,
-    /// Milliseconds of each pass, one vector per pass.
+    /// Of each pass, that of its name.
+    places: Vec<usize>,
+    /// Milliseconds of each name's passes, one vector per name.
     passes: Vec<Vec<f64>>,
     frames: Vec<f64>,
     cpu: Vec<f64>,
@@ -99,16 +102,29 @@ impl MemoryUse {
 }
 
 impl Recorder {
-    pub fn new(names: Vec<&'static str>) -> Self {
+    /// Passes of one name are one figure.
+    pub fn new(passes: impl Iterator<Item = &'static str>) -> Self {
+        let mut names = Vec::new();
+        let place = |name| {
+            let known = names.iter().position(|&known| known == name);
+            known.unwrap_or_else(|| {
+                names.push(name);
+                names.len() - 1
+            })
+        };
+        let places = passes.map(place).collect();
         let room = || Vec::with_capacity(FRAMES_WITHOUT_ALLOCATION);
-        Self { passes: names.iter().map(|_| room()).collect(), names, frames: room(), cpu: room() }
+        Self { passes: names.iter().map(|_| room()).collect(), names, places, frames: room(), cpu: room() }
     }
 
     /// GPU times of one frame, one per pass, or none where the device has no timestamps.
     pub fn add_gpu(&mut self, milliseconds: impl Iterator<Item = f64>) {
         let mut total = None;
-        for (pass, ms) in self.passes.iter_mut().zip(milliseconds) {
-            pass.push(ms);
+        for (&place, ms) in self.places.iter().zip(milliseconds) {
+            if total.is_none() {
+                self.passes.iter_mut().for_each(|pass| pass.push(0.0));
+            }
+            *self.passes[place].last_mut().expect("pushed before the first pass") += ms;
             *total.get_or_insert(0.0) += ms;
         }
         self.frames.extend(total);
@@ -132,6 +148,10 @@ impl Recorder {
 
     /// The report; rays and memory are filled in by the renderer.
     pub fn report(&self, capabilities: &Capabilities, trace: &str, graph: &FrameGraph) -> Timings {
+        let mut traffic = vec![Traffic::default(); self.names.len()];
+        for (&place, of_pass) in self.places.iter().zip(graph.traffic()) {
+            traffic[place] += of_pass;
+        }
         let pass = |((name, times), traffic): ((&&'static str, &Vec<f64>), Traffic)| PassTime {
             name,
             median_ms: quantile(warm(times), 0.5),
@@ -148,7 +168,7 @@ impl Recorder {
             frames: warm(&self.frames).len(),
             frame_ms_median: quantile(warm(&self.frames), 0.5),
             frame_ms: warm(&self.frames),
-            passes: self.names.iter().zip(&self.passes).zip(graph.traffic()).map(pass).collect(),
+            passes: self.names.iter().zip(&self.passes).zip(traffic).map(pass).collect(),
             cpu_ms_median: quantile(warm(&self.cpu), 0.5),
             first_frame_ms: self.frames.first().copied().unwrap_or(f64::NAN),
             build_ms: BuildTimes::default(),
@@ -196,6 +216,14 @@ fn warm(times: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn passes_of_one_name_add_up() {
+        let mut recorder = Recorder::new(["trace", "shade", "trace"].into_iter());
+        recorder.add_gpu([].into_iter());
+        recorder.add_gpu([1.0, 2.0, 4.0].into_iter());
+        assert_eq!((recorder.names, recorder.passes, recorder.frames), (vec!["trace", "shade"], vec![vec![5.0], vec![2.0]], vec![7.0]));
+    }
 
     #[test]
     fn the_first_frame_does_not_count() {

@@ -4,7 +4,7 @@ use super::{PassOptions, Technique};
 use crate::display::composite;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
-use crate::paths::{gbuffer, megakernel};
+use crate::paths::gbuffer;
 
 pub(super) const TECHNIQUE: Technique = Technique {
     name: "unfiltered",
@@ -16,8 +16,8 @@ pub(super) const TECHNIQUE: Technique = Technique {
     passes,
 };
 
-fn passes(frame: &mut FrameBuilder, _: PassOptions) -> Result<ImageHandle, GpuError> {
+fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
     gbuffer::add(frame)?;
-    let terms = megakernel::add_with_terms(frame)?;
+    let terms = options.kernel().add_with_terms(frame)?;
     composite::add(frame, &terms)
 }

@@ -3,7 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
-use common::render::{builtin, settings};
+use common::render::{builtin, set, settings};
 use pathspace::technique::{REGISTRY, Renderer, Settings};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -39,13 +39,16 @@ const FRAMES: u32 = 32;
 fn a_frame_allocates_nothing_on_host_and_device() {
     let gpu = common::gpu();
     let structures = pathspace::accel::REGISTRY.iter().filter(|entry| (entry.available)(gpu.capabilities()).is_ok());
-    for (structure, technique) in structures.flat_map(|structure| REGISTRY.iter().map(move |technique| (structure.name, technique))) {
-        let settings = Settings { technique, parameters: technique.parameters(), trace: structure.to_owned(), ..settings(16, 9) };
+    let techniques = || REGISTRY.iter().map(|technique| (technique, "megakernel")).chain([(&REGISTRY[0], "wavefront")]);
+    for (structure, (technique, kernel)) in structures.flat_map(|structure| techniques().map(move |technique| (structure.name, technique)))
+    {
+        let mut settings = Settings { technique, parameters: technique.parameters(), trace: structure.to_owned(), ..settings(16, 9) };
+        set(&mut settings, &[("paths.kernel", kernel)]);
         let mut renderer = Renderer::new(&gpu, builtin("hall:10000"), settings).unwrap();
         (0..WARM_UP).for_each(|_| renderer.render_frame().unwrap());
         let before = (ALLOCATIONS.load(Ordering::Relaxed), gpu.allocated_bytes());
         (0..FRAMES).for_each(|_| renderer.render_frame().unwrap());
         let after = (ALLOCATIONS.load(Ordering::Relaxed), gpu.allocated_bytes());
-        assert_eq!(before, after, "allocations and device bytes, {} by {structure}", technique.name);
+        assert_eq!(before, after, "allocations and device bytes, {} by {structure}, {kernel}", technique.name);
     }
 }

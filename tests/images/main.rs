@@ -6,6 +6,7 @@ mod common;
 mod agreement;
 mod budgets;
 mod exact;
+mod kernels;
 mod motion;
 mod references;
 mod shared_scenes;

@@ -1,0 +1,2 @@
+// paths/wavefront/connect.glsl, the terms summed up.
+#include "paths/wavefront/connect.glsl"

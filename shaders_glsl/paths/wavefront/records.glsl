@@ -1,0 +1,77 @@
+// What lies in the buffers of the wavefront path tracer, scalar layout. A slot is a pixel: thread i % 32 of tile i / 32.
+#ifndef PATHS_WAVEFRONT_RECORDS_GLSL
+#define PATHS_WAVEFRONT_RECORDS_GLSL
+
+#include "accel/ray.glsl"
+#include "lib/ray_cone.glsl"
+#include "paths/primary.glsl"
+
+/// The scattered ray to be traced, or traced last.
+struct StoredRay {
+    vec3 origin;
+    uint alpha_seed;
+    vec3 direction;
+    /// Vertices before the origin, filter vertex, delta.
+    uint marks;
+};
+
+struct StoredWeights {
+    vec3 throughput;
+    float diffuse_weight;
+    vec3 specular_weight;
+    float eta_scale;
+};
+
+struct StoredFootprint {
+    RayCone cone;
+    float travelled;
+    float pdf;
+};
+
+/// Of a Hit after a miss.
+const float NOTHING_HIT = -1.0;
+
+/// A shadow ray.
+struct StoredShadowRay {
+    vec3 origin;
+    float t_max;
+    vec3 direction;
+    uint alpha_seed;
+};
+
+/// What it brings.
+struct StoredLight {
+    vec3 radiance;
+    float diffuse_weight;
+    vec3 specular_weight;
+    /// Its path's slot, and the term that it belongs to in the upper two bits.
+    uint target;
+};
+
+const uint TERM_SHIFT = 30u;
+const uint SLOT_MASK = (1u << TERM_SHIFT) - 1u;
+
+/// Terms in front of the filter vertex, or the sum of all.
+struct StoredFront {
+    vec3 before;
+    vec3 attenuation;
+};
+
+/// Terms behind one lobe each.
+struct StoredLobes {
+    vec3 diffuse;
+    vec3 specular;
+};
+
+struct StoredVertex {
+    vec3 position;
+    float travelled;
+    vec3 normal;
+    vec3 incident;
+};
+
+uvec2 pixel_of_slot(uint slot) {
+    return pixel_in_tile(slot / 32u, slot % 32u);
+}
+
+#endif

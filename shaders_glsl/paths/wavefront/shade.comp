@@ -1,0 +1,3 @@
+// paths/wavefront/shade.glsl, the terms summed up.
+#extension GL_KHR_shader_subgroup_ballot : require
+#include "paths/wavefront/shade.glsl"
