@@ -38,15 +38,13 @@ pub static GPUS: &[Gpu] = &[
     gpu("arc-a770", 560.0, None),
 ];
 
-/// Passes that trace; a frame's rays are theirs together, since the count does not tell them apart.
-const TRACING_PASSES: &[&str] = &["gbuffer", "megakernel", "wavefront"];
 const FULL_HD_PIXELS: f64 = 1920.0 * 1080.0;
 
 /// For every GPU of [`GPUS`], `predicted_ms:GPU` at the size of `timings`, and `predicted_ms_1080p:GPU` with all cost in proportion to
 /// pixels. Milliseconds. In no table of what was measured: these keys are not among [`FIGURES`](super::figure::FIGURES).
 pub fn figures(timings: &Timings, size: [u32; 2]) -> BTreeMap<String, Figure> {
     let pixels = f64::from(size[0]) * f64::from(size[1]);
-    let passes: Vec<_> = timings.passes.iter().map(|pass| (pass.name, (pass.bytes_read + pass.bytes_written) as f64)).collect();
+    let passes: Vec<_> = timings.passes.iter().map(|pass| (pass.traces_rays, (pass.bytes_read + pass.bytes_written) as f64)).collect();
     let both = |gpu: &Gpu| {
         let predicted = frame_ms(&passes, timings.rays.per_pixel * pixels, gpu);
         [("predicted_ms", predicted), ("predicted_ms_1080p", predicted * FULL_HD_PIXELS / pixels)]
@@ -59,11 +57,10 @@ fn figure(value: f64) -> Figure {
     Figure { value, low: value, high: value, unit: "ms".to_owned(), samples: Vec::new() }
 }
 
-/// Of passes, by name and bytes. They run one after the other; those that trace count as one, so that the sum is a bound however the rays
-/// are shared among them.
-fn frame_ms(passes: &[(&str, f64)], rays: f64, gpu: &Gpu) -> f64 {
-    let bytes =
-        |tracing: bool| -> f64 { passes.iter().filter(|(name, _)| TRACING_PASSES.contains(name) == tracing).map(|pass| pass.1).sum() };
+/// Of passes: whether they trace, and bytes. They run one after the other; those that trace count as one, since the count of a frame's rays
+/// does not tell them apart, and so the sum is a bound however the rays are shared among them.
+fn frame_ms(passes: &[(bool, f64)], rays: f64, gpu: &Gpu) -> f64 {
+    let bytes = |tracing: bool| -> f64 { passes.iter().filter(|(traces, _)| *traces == tracing).map(|pass| pass.1).sum() };
     // 1 GB/s is 1e6 bytes per millisecond, 1 Gray/s 1e6 rays.
     let bytes_ms = |bytes: f64| bytes / (gpu.bandwidth_gb_per_second * 1e6);
     let rays_ms = gpu.grays_per_second.map_or(0.0, |rate| rays / (rate * 1e6));
@@ -80,7 +77,7 @@ mod tests {
     #[test]
     fn the_longer_of_bytes_and_rays_counts_where_rays_are_traced() {
         // 448e6 bytes take 1 ms, 12e6 rays 2 ms.
-        let ms = |rays| frame_ms(&[("megakernel", 448e6), ("atrous", 896e6)], rays, RTX_2070);
+        let ms = |rays| frame_ms(&[(true, 448e6), (false, 896e6)], rays, RTX_2070);
         assert!((ms(12e6) - (2.0 + 2.0)).abs() < 1e-12, "bound by rays");
         assert!((ms(3e6) - (1.0 + 2.0)).abs() < 1e-12, "bound by bytes");
     }
@@ -88,12 +85,12 @@ mod tests {
     #[test]
     fn without_a_published_rate_bytes_alone_bound() {
         let gpu = Gpu { grays_per_second: None, ..*RTX_2070 };
-        assert!((frame_ms(&[("gbuffer", 448e6)], 1e12, &gpu) - 1.0).abs() < 1e-12);
+        assert!((frame_ms(&[(true, 448e6)], 1e12, &gpu) - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn passes_that_trace_share_their_rays() {
-        let ms = |rays| frame_ms(&[("gbuffer", 448e6), ("megakernel", 448e6)], rays, RTX_2070);
+        let ms = |rays| frame_ms(&[(true, 448e6), (true, 448e6)], rays, RTX_2070);
         assert!((ms(12e6) - 2.0).abs() < 1e-12);
         assert!((ms(18e6) - 3.0).abs() < 1e-12);
     }
@@ -101,7 +98,15 @@ mod tests {
     /// 960x540 is a quarter of 1920x1080: 518,400 pixels, 10 rays each, are 5.184e6 rays, 0.648 ms at 8 Gray/s.
     #[test]
     fn predictions_scale_by_pixels() {
-        let pass = PassTime { name: "megakernel", median_ms: 0.0, p95_ms: 0.0, bytes_read: 0, bytes_written: 1, samples_ms: Vec::new() };
+        let pass = PassTime {
+            name: "megakernel",
+            median_ms: 0.0,
+            p95_ms: 0.0,
+            bytes_read: 0,
+            bytes_written: 1,
+            traces_rays: true,
+            samples_ms: Vec::new(),
+        };
         let timings = Timings { passes: vec![pass], rays: RayCounts { per_pixel: 10.0, ..Default::default() }, ..Default::default() };
         let figures = figures(&timings, [960, 540]);
         assert!((figures["predicted_ms:rtx-2080"].value - 0.648).abs() < 1e-12);

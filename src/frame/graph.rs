@@ -132,7 +132,8 @@ impl<'a> FrameBuilder<'a> {
     pub fn fill(&mut self, name: &'static str, buffer: BufferHandle, word: u32) {
         let resource = buffer.into();
         let bytes = self.resources.byte_size(resource);
-        self.push(name, Work::Fill { buffer, word }, &[Use { variable: "", resource, access: Access::Write, bytes }]);
+        let uses = [Use { variable: "", resource, access: Access::Write, bytes }];
+        self.push(name, Work::Fill { buffer, word }, Traffic::of(&uses), &uses);
     }
 
     /// The place of the next pass, for [`Self::repeat_per_sample`].
@@ -155,9 +156,9 @@ impl<'a> FrameBuilder<'a> {
         Ok(pipeline)
     }
 
-    pub(super) fn push(&mut self, name: &'static str, work: Work, uses: &[Use]) {
+    pub(super) fn push(&mut self, name: &'static str, work: Work, traffic: Traffic, uses: &[Use]) {
         let barrier = self.hazards.needs_barrier(uses);
-        self.passes.push(Pass { name, label: label(name), work, barrier, traffic: Traffic::of(uses) });
+        self.passes.push(Pass { name, label: label(name), work, barrier, traffic });
     }
 
     pub fn build(self) -> FrameGraph {

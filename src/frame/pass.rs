@@ -2,7 +2,7 @@
 
 use super::graph::FrameBuilder;
 use super::resources::{BufferHandle, Resource, Resources};
-use crate::gpu::{ComputePipeline, DescriptorSet, GpuError};
+use crate::gpu::{ComputePipeline, DescriptorSet, GpuError, traces_rays};
 use shader_compiler::{Binding, BindingKind};
 use std::ffi::CString;
 use std::sync::Arc;
@@ -44,11 +44,13 @@ pub(super) enum Groups {
     Indirect(BufferHandle, u64),
 }
 
-/// Bytes that a pass moves by its declaration: each value of each image and buffer once, unless it declares fewer.
+/// What a pass asks of the device: bytes by its declaration, each value of each image and buffer once, unless it declares fewer.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Traffic {
     pub read: u64,
     pub written: u64,
+    /// Its kernel traces rays.
+    pub traces: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,6 +74,7 @@ impl std::ops::AddAssign for Traffic {
     fn add_assign(&mut self, other: Self) {
         self.read += other.read;
         self.written += other.written;
+        self.traces |= other.traces;
     }
 }
 
@@ -79,7 +82,11 @@ impl Traffic {
     pub(super) fn of(uses: &[Use]) -> Self {
         uses.iter().fold(Self::default(), |sum, one| {
             let counted = |counts: bool| if counts { one.bytes } else { 0 };
-            Self { read: sum.read + counted(one.access != Access::Write), written: sum.written + counted(one.access != Access::Read) }
+            Self {
+                read: sum.read + counted(one.access != Access::Write),
+                written: sum.written + counted(one.access != Access::Read),
+                ..sum
+            }
         })
     }
 }
@@ -194,7 +201,8 @@ impl<'b, 'a> PassBuilder<'b, 'a> {
         if let Groups::Indirect(buffer, _) = groups {
             uses.push(Use { variable: "", resource: buffer.into(), access: Access::Read, bytes: INDIRECT_BYTES });
         }
-        frame.push(self.name, Work::Dispatch { pipeline, sets, argument: self.argument.unwrap_or(0), groups }, &uses);
+        let traffic = Traffic { traces: traces_rays(self.shader), ..Traffic::of(&uses) };
+        frame.push(self.name, Work::Dispatch { pipeline, sets, argument: self.argument.unwrap_or(0), groups }, traffic, &uses);
         Ok(())
     }
 }
@@ -342,7 +350,7 @@ mod tests {
         let resource = Resources::default().placeholder();
         let touch = |access, bytes| Use { variable: "", resource, access, bytes };
         let traffic = Traffic::of(&[touch(Access::Read, 1), touch(Access::Write, 10), touch(Access::Update, 100)]);
-        assert_eq!(traffic, Traffic { read: 101, written: 110 });
+        assert_eq!(traffic, Traffic { read: 101, written: 110, traces: false });
     }
 
     #[test]

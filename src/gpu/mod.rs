@@ -27,6 +27,6 @@ pub use gpu_allocator::MemoryLocation;
 pub use image::{Image, ImageInfo, TextureImage};
 pub use instance::list_devices;
 pub use pipeline::{ComputePipeline, Specialization};
-pub use shader::{load_shader, shader_stems};
+pub use shader::{load_shader, shader_stems, traces_rays};
 pub use submit::FrameRing;
 pub use timer::Timer;

@@ -18,6 +18,11 @@ pub fn shader_stems() -> impl Iterator<Item = (&'static str, Option<&'static str
     EMBEDDED.iter().map(|shader| (shader.stem, shader.structure))
 }
 
+/// Whether a kernel traces rays.
+pub fn traces_rays(stem: &str) -> bool {
+    EMBEDDED.iter().any(|shader| shader.stem == stem && shader.structure.is_some())
+}
+
 /// A kernel's SPIR-V. `structure` is the stem of an acceleration structure's file, and matters to kernels that trace rays only;
 /// `precision` matters to those with images in the frame's precision.
 ///
@@ -34,4 +39,15 @@ pub fn load_shader(stem: &str, structure: &str, precision: Precision) -> Result<
         return Ok(shader_compiler::compile_variant(Path::new(&directory), &variant)?);
     }
     Ok(bytemuck::pod_collect_to_vec(shader.spirv))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kernels_that_include_a_structure_trace() {
+        assert!(["paths/gbuffer", "paths/megakernel", "paths/wavefront/extend", "paths/wavefront/connect"].into_iter().all(traces_rays));
+        assert!(!["display/composite", "paths/wavefront/write"].into_iter().any(traces_rays));
+    }
 }

@@ -55,6 +55,7 @@ pub struct PassTime {
     /// Of images and buffers, as the pass declares them; scene, textures and acceleration structure not counted.
     pub bytes_read: u64,
     pub bytes_written: u64,
+    pub traces_rays: bool,
     /// Of each frame.
     #[serde(skip)]
     pub samples_ms: Vec<f64>,
@@ -158,6 +159,7 @@ impl Recorder {
             p95_ms: quantile(warm(times), 0.95),
             bytes_read: traffic.read,
             bytes_written: traffic.written,
+            traces_rays: traffic.traces,
             samples_ms: warm(times),
         };
         Timings {
