@@ -83,6 +83,9 @@ layout(constant_id = 139) const uint HPSF_INSERTION = 0;
 //@ hpsf.eviction age age|priority
 /// Cells leave the table when no sample has touched them for hpsf.age frames; by priority, also before, where new ones find no slot: those of few samples and long untouched first. Insertion is ordered then. Costs another pass over pixels.
 layout(constant_id = 140) const uint HPSF_EVICTION = 0;
+//@ hpsf.blend off off|on
+/// Size of cells between two powers of two: rounded down, which shows where it changes, or of either at random, the nearer the likelier. On needs nearly twice as many cells, each with fewer samples.
+layout(constant_id = 145) const uint HPSF_BLEND = 0;
 //@ hpsf.temporal off off|on
 /// Pictures of earlier frames, moved by motion vectors, are averaged with this one: antialiasing with frame.jitter, less noise in what is not filtered; lag. Costs a primary ray and a pass.
 layout(constant_id = 137) const uint HPSF_TEMPORAL = 0;
@@ -161,6 +164,9 @@ struct Parameters {
     //@ hpsf.largest 65536 1..1000000000 W/(sr*m^2)
     /// Largest radiance of a sample that enters a cell; it takes a share of 2^-40 as the unit of fixed point.
     float hpsf_largest;
+    //@ hpsf.limit 0 0..1000000
+    /// A sample adds no more than so many times what its cell knows from hpsf.few samples; 0: no limit. Removes fireflies; darkens, and light that fewer samples find fades.
+    float hpsf_limit;
     //@ hpsf.smooth 0 0..4 passes
     /// Passes of an edge-avoiding filter over the screen, each twice as wide as the one before, for what the jitter of cells leaves as noise. More blur shadows; 25 taps each.
     uint hpsf_smooth;

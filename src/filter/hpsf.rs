@@ -25,6 +25,9 @@ pub const STATISTICS: [&str; 5] = ["hpsf_probed", "hpsf_failed", "hpsf_collided"
 const WORD: u64 = 4;
 const CELL: u64 = 16;
 
+/// A float plus 1 is the same float from here on: all of a frame's samples may meet in one cell.
+const MOST_COUNTED_IN_FLOATS: u32 = 1 << 24;
+
 /// What the table depends on.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
@@ -83,9 +86,11 @@ pub fn add(frame: &mut FrameBuilder, terms: &Terms, options: Options) -> Result<
 
 impl Table {
     fn new(frame: &mut FrameBuilder, options: Options) -> Result<Self, GpuError> {
-        let float_sums = options.float_sums && frame.gpu().capabilities().float_atomics;
+        let (atomics, countable) = (frame.gpu().capabilities().float_atomics, frame.pixels() <= MOST_COUNTED_IN_FLOATS);
+        let float_sums = options.float_sums && atomics && countable;
         if options.float_sums && !float_sums {
-            tracing::warn!("the device has no float atomics: hpsf sums in fixed point");
+            let why = if atomics { "a float cannot count so many pixels" } else { "the device has no float atomics" };
+            tracing::warn!("{why}: hpsf sums in fixed point");
         }
         let sums = if float_sums { 16 } else { 32 };
         let most = frame.gpu().capabilities().max_storage_buffer_range / sums;

@@ -20,7 +20,7 @@ fn under_a_constant_sky(base_color: [f32; 4]) -> (Scene, Settings) {
 }
 
 /// Every switch of a filter that changes what it adds up.
-const SWITCHES: [&[(&str, &str)]; 12] = [
+const SWITCHES: [&[(&str, &str)]; 13] = [
     &[],
     &[("hpsf.sums", "float"), ("hpsf.jitter_by", "sampler")],
     &[("hpsf.table", "swapped"), ("hpsf.levels", "3")],
@@ -31,6 +31,7 @@ const SWITCHES: [&[(&str, &str)]; 12] = [
     &[("hpsf.keys", "exact"), ("hpsf.normal_bits", "8")],
     &[("hpsf.normals", "similar"), ("hpsf.normal_bits", "6"), ("hpsf.few", "1000")],
     &[("hpsf.eviction", "priority"), ("hpsf.cells", "0.01"), ("hpsf.width", "4")],
+    &[("hpsf.blend", "on"), ("hpsf.limit", "1"), ("hpsf.few", "1")],
     &[("sspsf.window", "3")],
     &[("hpsf.smooth", "4"), ("hpsf.smooth_few", "100000"), ("paths.scramble", "tile"), ("frame.jitter", "on")],
 ];

@@ -133,6 +133,44 @@ fn the_middle_of_a_cell_of_normals_is_a_unit_vector_in_it() {
     }
 }
 
+const LEVELS: &str = r#"
+#include "filter/hpsf/cell.glsl"
+struct In { float distance; float number; };
+struct Out { int level; };
+void kernel(uint i) {
+    outputs[i] = Out(level_at(inputs[i].distance, inputs[i].number));
+}
+"#;
+
+/// Over all numbers the level is log2(width) - 1/2 in the mean, and one of the two around it; without blending it is rounded down.
+#[test]
+fn blended_levels_follow_the_width_without_a_step() {
+    let (numbers, widths) = (256, 40);
+    let width = |i: usize| 0.01 * (i as f64 * 0.17).exp2();
+    let pairs = (0..widths).flat_map(|i| (0..numbers).map(move |n| [width(i) as f32, (n as f32 + 0.5) / numbers as f32]));
+    let inputs: Vec<[f32; 2]> = pairs.collect();
+    let mut options = common::kernel::KernelOptions::default();
+    // A pixel at 1 m is 1/16 m high, and cells are 16 pixels wide: as wide as they are far away.
+    options.frame.extent = [32, 32];
+    options.frame.camera.up = [0.0, 1.0, 0.0];
+    options.frame.camera.projection = 1;
+    options.parameters.hpsf_width = 16.0;
+    for blend in [0, 1] {
+        options.constants = vec![(145, blend)];
+        let levels: Vec<i32> = common::run_kernel_with(&common::gpu(), LEVELS, &inputs, &options);
+        for (i, levels) in levels.chunks(numbers).enumerate() {
+            let exact = width(i).log2();
+            let (low, high) = (*levels.iter().min().unwrap(), *levels.iter().max().unwrap());
+            let mean = levels.iter().map(|&level| f64::from(level)).sum::<f64>() / numbers as f64;
+            if blend == 0 {
+                assert_eq!((low, high), (exact.floor() as i32, exact.floor() as i32), "2^{exact} m");
+            } else {
+                assert!((mean - (exact - 0.5)).abs() <= 1.0 / numbers as f64 && high - low <= 1, "2^{exact} m: {mean}");
+            }
+        }
+    }
+}
+
 const EXACT: &str = r#"
 #include "lib/hash_key.glsl"
 struct In { ivec3 cell; int level; uint normal; };

@@ -20,6 +20,7 @@ mod effects;
 mod filter_energy;
 mod filter_hash_key;
 mod filter_hpsf;
+mod filter_hpsf_history;
 mod filter_hpsf_order;
 mod filter_hpsf_table;
 mod gpu_kernel;

@@ -48,17 +48,26 @@ vec4 jitter_numbers(uvec2 pixel, uint index) {
     return vec4(first, sample_2d(numbers));
 }
 
-int level_at(float distance) {
-    return level_of_width(parameters.hpsf_width * pixel_footprint(max(distance, 0.0)));
+/// `number`, in [0, 1): with hpsf.blend, a place between two levels is of either, the nearer the likelier. The mean over numbers is
+/// log2(width) - 1/2, as that of rounding down is over widths.
+int level_at(float distance, float number) {
+    float width = parameters.hpsf_width * pixel_footprint(max(distance, 0.0));
+    return level_of_width(HPSF_BLEND == 1u ? width * exp2(number - 0.5) : width);
+}
+
+/// A number in [0, 1) of a jitter's: what is below 2^-12 of the first one, on which positions hardly depend.
+float level_number(vec4 numbers) {
+    return fract(numbers.x * 4096.0);
 }
 
 /// The key of a vertex, jittered by numbers in [0, 1)^4, `coarser` levels above the one of its distance.
 CellKey key_of(FilterPoint point, vec4 numbers, int coarser) {
     Basis basis = basis_around(point.normal);
-    int level = level_at(point.distance) + coarser;
+    float number = level_number(numbers);
+    int level = level_at(point.distance, number) + coarser;
     vec2 shift = (2.0 * numbers.xy - 1.0) * (parameters.hpsf_jitter * power_of_two(level));
     vec3 offset = shift.x * basis.tangent + shift.y * basis.bitangent;
-    int level_there = level_at(point.distance + dot(offset, point.incident) * point.view_cosine) + coarser;
+    int level_there = level_at(point.distance + dot(offset, point.incident) * point.view_cosine, number) + coarser;
     vec2 tilt = (2.0 * numbers.zw - 1.0) * (parameters.hpsf_normal_jitter * exp2(-0.5 * float(parameters.hpsf_normal_bits)));
     vec3 normal = normalize(point.normal + tilt.x * basis.tangent + tilt.y * basis.bitangent);
     ivec3 cell = cell_of(point.position + offset, frame.origin_steps, frame.log2_origin_step, level_there);

@@ -58,6 +58,17 @@ bool is_unknown(uint slot) {
     return HPSF_TABLE == TABLE_SWAPPED || unpack_cell(known_cells.at[slot]).count == 0u;
 }
 
+/// The radiance, no brighter than hpsf.limit times what the slot's cell knows from hpsf.few samples or more.
+///
+/// That is biased, and feeds on itself, since the mean is of limited samples: light that fewer than one in hpsf.limit samples finds fades
+/// from a cell, however bright it is. A cell that knows only black takes everything.
+vec3 limited(vec3 radiance, CellKey key, uint slot) {
+    Cell known = HPSF_TABLE == TABLE_SWAPPED ? known_cell(key) : unpack_cell(known_cells.at[slot]);
+    float most = parameters.hpsf_limit * luminance(known.mean);
+    float own = luminance(radiance);
+    return known.count >= parameters.hpsf_few && most > 0.0 && own > most ? radiance * (most / own) : radiance;
+}
+
 void collect_pixel() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
@@ -79,7 +90,8 @@ void collect_pixel() {
         if (slot == NO_SLOT) {
             continue;
         }
-        bool first = add_sample(slot, clamp(radiance, vec3(0.0), vec3(parameters.hpsf_largest)), dither);
+        vec3 added = parameters.hpsf_limit > 0.0 ? limited(radiance, key, slot) : radiance;
+        bool first = add_sample(slot, clamp(added, vec3(0.0), vec3(parameters.hpsf_largest)), dither);
         if (first && HPSF_TIME != TIME_FRAME && is_unknown(slot)) {
             seeds.at[slot] = pack_cell(seed_of(key));
         }

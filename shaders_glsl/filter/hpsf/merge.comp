@@ -8,6 +8,8 @@
 #include "filter/hpsf/ordered.glsl"
 #include "lib/colour.glsl"
 #include "lib/elements.glsl"
+#include "lib/rng.glsl"
+#include "lib/rounding.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -44,6 +46,19 @@ float alpha_of(uint old_count, uint new_count) {
     return HPSF_TIME == TIME_AVERAGE ? parameters.hpsf_alpha : float(old_count) / (float(old_count) + float(new_count));
 }
 
+/// The old mean, a step nearer the new one. After millions of samples a step is less than a float's last digit: rounded to nearest, the mean
+/// would stand still. The numbers that round it are hashed from the cell's content, which does not depend on its slot.
+vec3 towards(Cell old, Cell new, float weight) {
+    uvec4 bits = pcg4d(uvec4(floatBitsToUint(new.mean), old.count ^ frame.frame));
+    vec3 numbers = vec3(unit_float(bits.xy), unit_float(bits.z));
+    vec3 next;
+    for (uint channel = 0u; channel < 3u; channel++) {
+        float change = weight * (new.mean[channel] - old.mean[channel]);
+        next[channel] = add_rounding_at_random(old.mean[channel], change, numbers[channel]);
+    }
+    return next;
+}
+
 void store(uint slot, Cell cell) {
     cells.at[slot] = pack_cell(cell);
     if (ORDERED) {
@@ -73,7 +88,7 @@ void main() {
         old = unpack_cell(seeds.at[slot]);
     }
     uint known = min(old.count, parameters.hpsf_samples);
-    vec3 mean = old.mean + (1.0 - alpha_of(known, new.count)) * (new.mean - old.mean);
+    vec3 mean = towards(old, new, 1.0 - alpha_of(known, new.count));
     uint count = min((HPSF_TIME == TIME_FRAME ? 0u : known) + new.count, MOST_SAMPLES);
     store(slot, Cell(all_finite(mean) ? mean : new.mean, count, 0u));
 }

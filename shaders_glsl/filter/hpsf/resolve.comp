@@ -45,7 +45,7 @@ Cell with_similar(Cell cell, CellKey key, vec3 normal) {
 /// With the eight cells around it in the tangent plane.
 Cell with_neighbours(Cell cell, FilterPoint point, vec4 numbers, int coarser) {
     Basis basis = basis_around(point.normal);
-    float size = power_of_two(level_at(point.distance) + coarser);
+    float size = power_of_two(level_at(point.distance, level_number(numbers)) + coarser);
     vec3 centre = point.position;
     for (uint i = 0u; i < 9u; i++) {
         if (i != 4u) {
