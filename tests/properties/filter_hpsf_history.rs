@@ -118,7 +118,7 @@ fn after_an_absence(frames: u32, values: &[(&str, &str)]) -> f64 {
 #[test]
 fn a_camera_that_returns_sees_no_stale_light_after_the_stated_frames() {
     let age = ("hpsf.age", "3");
-    for values in [&[age][..], &[age, ("hpsf.eviction", "priority")], &[age, ("hpsf.insertion", "ordered"), ("hpsf.normals", "similar")]] {
+    for values in [&[age][..], &[age, ("hpsf.eviction", "priority")]] {
         assert!(after_an_absence(3, values) > 0.01, "{values:?}: the light would be seen");
         assert_eq!(after_an_absence(4, values), 0.0, "{values:?}");
     }

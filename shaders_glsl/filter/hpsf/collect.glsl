@@ -61,7 +61,9 @@ bool is_unknown(uint slot) {
 /// The radiance, no brighter than hpsf.limit times what the slot's cell knows from hpsf.few samples or more.
 ///
 /// That is biased, and feeds on itself, since the mean is of limited samples: light that fewer than one in hpsf.limit samples finds fades
-/// from a cell, however bright it is. A cell that knows only black takes everything.
+/// from a cell, however bright it is. A cell that knows only black takes everything. Measured after 16 frames of 96x54 pixels, mean radiance
+/// over that without a limit, and relMSE likewise: cornell 0.998 and 0.998 with a limit of 10, 0.97 and 1.02 with 3; material
+/// 0.975 and 0.97 with 10, 0.65 and 1.15 with 3. A limit of 10 gains little, and less than 10 loses light.
 vec3 limited(vec3 radiance, CellKey key, uint slot) {
     Cell known = HPSF_TABLE == TABLE_SWAPPED ? known_cell(key) : unpack_cell(known_cells.at[slot]);
     float most = parameters.hpsf_limit * luminance(known.mean);
