@@ -63,7 +63,7 @@ void main() {
         imageStore(identity, pixel, uvec4(~0u));
         return;
     }
-    HitPoint point = hit_point(hit, ray.direction, cone_advance(primary_cone(), hit.t));
+    HitPoint point = hit_point(hit, ray.direction, cone_advance(camera_cone(frame.camera), hit.t));
     Surface surface = point.surface;
     imageStore(position, pixel, vec4(point.origin.position, hit.t));
     imageStore(normal, pixel, vec4(surface.normal_ws, dot(surface.normal_ws, surface.geometric_normal_ws)));

@@ -6,15 +6,51 @@
 
 #include "accel/trace.glsl"
 #include "paths/path.glsl"
+#ifdef RETRACES
+#include "paths/retraced.glsl"
+#endif
 
 /// Tiles of 8x4 pixels that a workgroup of 32 threads works off.
 layout(constant_id = 201) const uint TILES = 1;
 
-/// The thread's pixel in tile `turn` or the first one after it that lies in the picture; false where there is none.
-bool find_pixel(uint group, uint thread, inout uint turn, out uvec2 pixel) {
+/// What a workgroup traces: pixels of the picture; or, where the kernel retraces, one path of the last frame for each square of pixels.
+struct Field {
+    /// Number of the workgroup among those of its field.
+    uint group;
+    uvec2 extent;
+    bool retraced;
+};
+
+Field field_of(uint group) {
+#ifdef RETRACES
+    if (group >= RETRACING_GROUP) {
+        return Field(group - RETRACING_GROUP, frame.frame > 0u ? retraced_extent() : uvec2(1u, 0u), true);
+    }
+#endif
+    return Field(group, frame.extent, false);
+}
+
+/// The next path of a pixel, or a square's from the last frame. One call, whatever it is: the same instructions for the same bits.
+Path field_path(Field field, uvec2 pixel, uint sampled) {
+    Camera camera = frame.camera;
+    vec2 jitter = frame.jitter;
+    uint sample_index = frame.first_sample + sampled;
+#ifdef RETRACES
+    if (field.retraced) {
+        camera = frame.previous_camera;
+        jitter = frame.previous_jitter;
+        sample_index = frame.first_sample - 1u;
+        pixel = retraced_pixel(pixel, sample_index);
+    }
+#endif
+    return path_from(camera, jitter, pixel, sample_index);
+}
+
+/// The thread's pixel in tile `turn` or the first one after it that lies in the field; false where there is none.
+bool find_pixel(Field field, uint thread, inout uint turn, out uvec2 pixel) {
     for (; turn < TILES; turn++) {
-        pixel = pixel_in_tile(group * TILES + turn, thread);
-        if (all(lessThan(pixel, frame.extent))) {
+        pixel = pixel_in_tile(field.extent.x, field.group * TILES + turn, thread);
+        if (all(lessThan(pixel, field.extent))) {
             return true;
         }
     }
@@ -26,12 +62,13 @@ void write_pixel(uvec2 pixel, Terms terms, uint samples, uvec2 counts);
 
 /// The paths of all pixels of a thread, one after the other.
 void trace_pixels(uint group, uint thread) {
+    Field field = field_of(group);
     uint turn = 0u;
     uint sampled = 0u;
     uvec2 pixel;
-    bool paths_left = find_pixel(group, thread, turn, pixel);
+    bool paths_left = find_pixel(field, thread, turn, pixel);
     uint samples = samples_of(pixel);
-    Path path = path_begin(pixel, frame.first_sample);
+    Path path = field_path(field, pixel, 0u);
     Terms terms = no_terms();
     Pending pending;
     pending.ray = NO_RAY;
@@ -74,10 +111,10 @@ void trace_pixels(uint group, uint thread) {
                 counts = uvec2(0u);
                 sampled = 0u;
                 turn++;
-                paths_left = find_pixel(group, thread, turn, pixel);
+                paths_left = find_pixel(field, thread, turn, pixel);
                 samples = samples_of(pixel);
             }
-            path = path_begin(pixel, frame.first_sample + sampled);
+            path = field_path(field, pixel, sampled);
             ended = false;
         }
     }

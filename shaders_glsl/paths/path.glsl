@@ -91,16 +91,17 @@ Sampler path_numbers(uvec2 pixel, uint sample_index) {
     return sampler_begin(pixel, sample_index, frame.seed);
 }
 
-Path path_begin(uvec2 pixel, uint sample_index) {
+/// From a camera, through a pixel's point at `jitter` where all samples share one.
+Path path_from(Camera camera, vec2 jitter, uvec2 pixel, uint sample_index) {
     Path path;
     path.numbers = path_numbers(pixel, sample_index);
 #ifdef SHARED_JITTER
-    vec2 offset = frame.jitter;
+    vec2 offset = jitter;
 #else
     vec2 offset = sample_2d(path.numbers) - 0.5;
 #endif
-    path.ray = primary_ray(pixel, offset);
-    path.cone = primary_cone();
+    path.ray = camera_ray(camera, pixel, offset);
+    path.cone = camera_cone(camera);
     path.throughput = vec3(1.0);
     path.diffuse_weight = 0.0;
     path.specular_weight = vec3(1.0);
@@ -111,6 +112,10 @@ Path path_begin(uvec2 pixel, uint sample_index) {
     path.filter_vertex = NO_VERTEX;
     path.travelled = 0.0;
     return path;
+}
+
+Path path_begin(uvec2 pixel, uint sample_index) {
+    return path_from(frame.camera, frame.jitter, pixel, sample_index);
 }
 
 /// The same holes for everything that one ray of one sample sees, others for the next.

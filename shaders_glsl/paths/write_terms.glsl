@@ -15,7 +15,7 @@ void write_terms(uvec2 at, Terms terms) {
     imageStore(specular_direct, pixel, finite_or_black(terms.specular_direct));
     imageStore(specular_indirect, pixel, finite_or_black(terms.specular_indirect));
     FilterVertex vertex = terms.vertex;
-    imageStore(filter_position, pixel, vec4(vertex.position, view_plane_distance(at, vertex.travelled)));
+    imageStore(filter_position, pixel, vec4(vertex.position, view_plane_distance(primary_ray(at, frame.jitter), frame.camera, vertex.travelled)));
     imageStore(filter_normal, pixel, uvec4(vertex.travelled > 0.0 ? pack_normal(vertex.normal) : 0u));
     imageStore(filter_incident, pixel, uvec4(vertex.travelled > 0.0 ? pack_normal(vertex.incident) : 0u));
 }

@@ -59,8 +59,8 @@ layout(constant_id = 130) const uint HPSF_SUMS = 0;
 //@ hpsf.table persistent persistent|swapped
 /// One table that keeps cells until they are evicted, or two that change places with every frame: only cells touched in the last frame are known.
 layout(constant_id = 131) const uint HPSF_TABLE = 0;
-//@ hpsf.time integrate frame|average|integrate
-/// What a cell knows: this frame's samples, an exponential moving average, or the mean over up to hpsf.samples samples.
+//@ hpsf.time integrate frame|average|integrate|hybrid|detect
+/// What a cell knows: this frame's samples, an exponential moving average, the mean over up to hpsf.samples samples, or that mean as far back as the light was the same. Hybrid traces some paths of the last frame again: one for each square of hpsf.retrace pixels a side. Detect takes for a change what is too far from the mean for chance; no ray, and no change found that is less than the noise.
 layout(constant_id = 132) const uint HPSF_TIME = 2;
 //@ hpsf.normals key key|fingerprint|similar
 /// Quantised normals are part of both hashes, or of the fingerprint alone, so that all normals of one place are near each other in the table. Similar: the latter, and cells with fewer samples than hpsf.few take in those at their place whose normals are no more than hpsf.similar away; less noise on curved surfaces, and flatter shading.
@@ -149,6 +149,18 @@ struct Parameters {
     //@ hpsf.cells 1 0.001..8 cells per pixel
     /// Size of the table, 52 bytes a cell (36 with float sums; 72 and 56 swapped). Where it is too small, pixels go unfiltered.
     float hpsf_cells;
+    //@ hpsf.shrink 0 0..0.5
+    /// Cells are frames^-shrink as wide after so many frames of a still camera. Where time is integrated, pictures converge to the truth; with less than 0.5, cells have ever more samples all the same. More noise in the frames before.
+    float hpsf_shrink;
+    //@ hpsf.retrace 4 1..16 pixels
+    /// Side of the squares of which one path is traced again in the next frame, where hpsf.time is hybrid. Smaller: finer borders between what is forgotten and what is kept; 1 / side^2 of the rays more.
+    uint hpsf_retrace;
+    //@ hpsf.retraced_few 4 1..1000 paths
+    /// Where fewer retraced paths tell of a cell, the next coarser one speaks for it. More: less forgotten by chance, blurrier borders.
+    uint hpsf_retraced_few;
+    //@ hpsf.adapt 0.5 0..100
+    /// How readily hybrid and detect forget where light changes: mean over standard deviation of a sample, as it is taken to be. More: less lag, more noise; 0: never.
+    float hpsf_adapt;
     //@ hpsf.alpha 0.9 0..1
     /// Weight of the past where hpsf.time is average. More: less noise, more lag.
     float hpsf_alpha;

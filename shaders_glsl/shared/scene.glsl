@@ -193,6 +193,8 @@ struct FrameData {
     float scene_radius;
     /// sub-pixel offset of this frame's primary rays in -1/2..1/2, pixels, where all samples share one.
     vec2 jitter;
+    /// The last frame's.
+    vec2 previous_jitter;
     /// Samples per pixel of this frame, at least 1; and the share of the pixels that take one more, 0..1.
     uint samples;
     float more_samples;

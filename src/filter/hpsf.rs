@@ -6,10 +6,14 @@
 //! Three passes, and before them up to two that give slots in a fixed order (24 bytes of vertex and 4 of key read per pixel and level). collect: each pixel's sample into a cell, 56 bytes read per pixel, and per level 4 bytes of key (exact: 8) read and 28
 //! (float: 16) of sums updated. merge: over slots, 4 bytes read each, and for those taken 32 (16) of sums, 16 of seed and 16 of
 //! mean. resolve: 56 bytes read and 20 written per pixel, 20 read per lookup and level. Where one of [`STATISTICS`] is asked for, a
-//! fourth pass puts out what became of the insertions, and a fifth before it whose keys the slots hold.
+//! fourth pass puts out what became of the insertions, and a fifth before it whose keys the slots hold. hpsf/changes.rs lets cells
+//! forget where light has changed.
+
+mod changes;
 
 use crate::frame::{BufferHandle, FrameBuilder, History, ImageHandle, PassBuilder};
 use crate::gpu::{GpuError, vk};
+use crate::paths::Retraced;
 use crate::paths::terms::Terms;
 
 /// Specialization constants.
@@ -46,6 +50,8 @@ pub struct Options {
     pub float_sums: bool,
     /// Put out [`STATISTICS`].
     pub statistics: bool,
+    /// Paths of the last frame that were traced again: cells forget where they tell of a change.
+    pub retraced: Option<Retraced>,
 }
 
 /// The mean over a cell, and the samples that it is over.
@@ -77,6 +83,9 @@ pub fn add(frame: &mut FrameBuilder, terms: &Terms, options: Options) -> Result<
         table.give_slots(frame, terms, options.evicts)?;
     }
     table.collect(frame, terms)?;
+    if let Some(retraced) = options.retraced {
+        changes::add(frame, &table, terms, retraced, options.levels)?;
+    }
     table.merge(frame)?;
     if options.statistics {
         table.statistics(frame, terms)?;

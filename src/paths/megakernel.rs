@@ -1,34 +1,44 @@
 //! Whole paths in one kernel: shaders_glsl/paths/megakernel.glsl, with radiance summed up (megakernel.comp) or its terms apart
-//! (megakernel_terms.comp; Meijer, section 4.1, algorithm 1).
+//! (megakernel_terms.comp; Meijer, section 4.1, algorithm 1), and with some of the last frame's paths traced again (megakernel_retraced.comp).
 //!
 //! Takes the scene. Also returns `ray_count`: scattered rays in the low, shadow rays in the high 16 bits. No history. Writes 20 bytes per
 //! pixel, or 124 with terms (12 and 76 at fp16), 24 of them for the filter vertex; traces up to 2 (bounces + 1) + 1 rays per sample.
 
 use super::terms::Terms;
-use crate::frame::{FrameBuilder, ImageHandle};
+use crate::frame::{BufferHandle, FrameBuilder, ImageHandle};
 use crate::gpu::{DeviceKind, GpuError, vk};
 
 /// Specialization constant: tiles of a workgroup.
 const TILES: u32 = 201;
+/// The first workgroup that retraces.
+const RETRACING_GROUP: u32 = 203;
+
+/// Bytes of a path that is kept for the next frame, and of one that is retraced.
+const KEPT: u64 = 16;
+const RETRACED: u64 = 36;
 
 /// Tiles of 8x4 pixels that a workgroup works off, one pixel per thread and tile. More of them keep more threads busy while long paths
 /// go on; fewer keep more workgroups for wide devices.
 fn tiles_per_group(frame: &FrameBuilder) -> u32 {
     let most = if frame.gpu().capabilities().kind == DeviceKind::Software { 16 } else { 4 };
     // Enough workgroups for small pictures, too.
-    (tiles(frame) / 64).clamp(1, most)
+    (tiles(frame.extent()) / 64).clamp(1, most)
 }
 
-fn tiles(frame: &FrameBuilder) -> u32 {
-    let [width, height] = frame.extent();
+fn tiles([width, height]: [u32; 2]) -> u32 {
     width.div_ceil(8) * height.div_ceil(4)
+}
+
+/// Workgroups for a field of so many pixels.
+fn groups_for(frame: &FrameBuilder, extent: [u32; 2]) -> u32 {
+    tiles(extent).div_ceil(tiles_per_group(frame))
 }
 
 /// Radiance, the mean of the frame's samples per pixel.
 pub fn add(frame: &mut FrameBuilder) -> Result<ImageHandle, GpuError> {
     let radiance = frame.color_image("radiance")?;
     let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
-    let (per_group, groups) = (tiles_per_group(frame), tiles(frame).div_ceil(tiles_per_group(frame)));
+    let (per_group, groups) = (tiles_per_group(frame), groups_for(frame, frame.extent()));
     let pass = frame.pass("megakernel", "paths/megakernel").constant(TILES, per_group).groups(groups);
     pass.writes("radiance", radiance).writes("ray_count", ray_count).add()?;
     Ok(radiance)
@@ -38,10 +48,37 @@ pub fn add(frame: &mut FrameBuilder) -> Result<ImageHandle, GpuError> {
 pub fn add_with_terms(frame: &mut FrameBuilder) -> Result<Terms, GpuError> {
     let terms = Terms::new(frame)?;
     let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
-    let (per_group, groups) = (tiles_per_group(frame), tiles(frame).div_ceil(tiles_per_group(frame)));
+    let (per_group, groups) = (tiles_per_group(frame), groups_for(frame, frame.extent()));
     let pass = frame.pass("megakernel", "paths/megakernel_terms").constant(TILES, per_group).groups(groups);
-    let pass = pass.writes("ray_count", ray_count).writes("filter_position", terms.vertex.position);
-    let pass = pass.writes("filter_normal", terms.vertex.normal).writes("filter_incident", terms.vertex.incident);
-    terms.named().into_iter().fold(pass, |pass, (name, image)| pass.writes(name, image)).add()?;
+    terms.written_by(pass.writes("ray_count", ray_count)).add()?;
     Ok(terms)
+}
+
+/// Paths that are traced in two frames: shaders_glsl/paths/retraced.glsl.
+#[derive(Debug, Clone, Copy)]
+pub struct Retraced {
+    /// One for each square of pixels.
+    pub paths: u32,
+    /// What they found in the last frame, and what they find now.
+    pub before: BufferHandle,
+    pub now: BufferHandle,
+}
+
+/// The same, and once more one of the last frame's paths for each square of `side` pixels a side: 52 bytes and up to 2 (bounces + 1) + 1 rays
+/// for each. History: those of this frame that the next one will retrace, 16 bytes each. Also returns `retraced_ray_count`, in its first pixels.
+pub fn add_with_retraced(frame: &mut FrameBuilder, side: u32) -> Result<(Terms, Retraced), GpuError> {
+    let terms = Terms::new(frame)?;
+    let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
+    let retraced_ray_count = frame.image("retraced_ray_count", vk::Format::R32_UINT)?;
+    let squares = frame.extent().map(|pixels| pixels.div_ceil(side));
+    let paths = squares[0] * squares[1];
+    let kept = frame.buffer_history("kept paths", u64::from(paths) * KEPT)?;
+    let now = frame.buffer("retraced paths", u64::from(paths) * RETRACED)?;
+    let (own, further) = (groups_for(frame, frame.extent()), groups_for(frame, squares));
+    let per_group = tiles_per_group(frame);
+    let pass = frame.pass("megakernel", "paths/megakernel_retraced").constant(TILES, per_group).groups(own + further);
+    let pass = pass.constant(RETRACING_GROUP, own).writes("ray_count", ray_count);
+    let pass = pass.writes("retraced_ray_count", retraced_ray_count).touching(4 * u64::from(paths));
+    terms.written_by(pass.writes("kept", kept.current).writes("retraced", now)).add()?;
+    Ok((terms, Retraced { paths, before: kept.previous, now }))
 }

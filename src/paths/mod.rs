@@ -6,6 +6,7 @@ mod megakernel;
 pub mod terms;
 mod wavefront;
 
+pub use megakernel::Retraced;
 pub use wavefront::Options as WavefrontOptions;
 
 use crate::frame::{FrameBuilder, ImageHandle};
@@ -33,5 +34,13 @@ impl Kernel {
             Self::Megakernel => megakernel::add_with_terms(frame),
             Self::Wavefront(options) => wavefront::add_with_terms(frame, options),
         }
+    }
+
+    /// The same, and one path of the last frame once more for each square of `side` pixels a side. Only the megakernel does that.
+    pub fn add_with_retraced(self, frame: &mut FrameBuilder, side: u32) -> Result<(terms::Terms, Retraced), GpuError> {
+        if let Self::Wavefront(_) = self {
+            tracing::warn!("paths.kernel=wavefront retraces no paths, which hpsf.time=hybrid is about: the megakernel is used");
+        }
+        megakernel::add_with_retraced(frame, side)
     }
 }

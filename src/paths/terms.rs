@@ -1,6 +1,6 @@
 //! Radiance terms of one path per pixel, kept apart at the filter vertex: shaders_glsl/paths/terms.glsl, Meijer, section 4.1, algorithm 1.
 
-use crate::frame::{FrameBuilder, ImageHandle};
+use crate::frame::{FrameBuilder, ImageHandle, PassBuilder};
 use crate::gpu::{GpuError, vk};
 
 /// What one path per pixel is made of; shaders_glsl/paths/terms.glsl says how the terms sum up.
@@ -40,6 +40,13 @@ impl Terms {
                 incident: frame.image("filter_incident", vk::Format::R32_UINT)?,
             },
         })
+    }
+
+    /// By a kernel with paths/write_terms.glsl.
+    pub(super) fn written_by<'b, 'a>(&self, pass: PassBuilder<'b, 'a>) -> PassBuilder<'b, 'a> {
+        let pass = pass.writes("filter_position", self.vertex.position).writes("filter_normal", self.vertex.normal);
+        let pass = pass.writes("filter_incident", self.vertex.incident);
+        self.named().into_iter().fold(pass, |pass, (name, image)| pass.writes(name, image))
     }
 
     /// Each with its name in shaders.

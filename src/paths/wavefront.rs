@@ -68,13 +68,11 @@ pub fn add_with_terms(frame: &mut FrameBuilder, options: Options) -> Result<Term
     wavefront.trace(frame, options)?;
     let terms = Terms::new(frame)?;
     let pass = frame.pass("wavefront write", "paths/wavefront/write_terms").elements(wavefront.slots);
-    let pass = pass.writes("filter_position", terms.vertex.position).reads("front", wavefront.front);
-    let pass = pass.writes("filter_normal", terms.vertex.normal).writes("filter_incident", terms.vertex.incident);
     let pass = wavefront
         .apart
         .iter()
         .fold(pass, |pass, apart| pass.reads("direct", apart.direct).reads("indirect", apart.indirect).reads("vertices", apart.vertices));
-    terms.named().into_iter().fold(pass, |pass, (name, image)| pass.writes(name, image)).add()?;
+    terms.written_by(pass.reads("front", wavefront.front)).add()?;
     Ok(terms)
 }
 

@@ -212,7 +212,8 @@ impl Renderer {
             extent: self.settings.extent,
             seed: self.settings.seed,
             first_sample: self.first_sample,
-            jitter: if self.settings.parameters.number("frame.jitter") == 1.0 { sub_pixel(self.frame) } else { [0.0; 2] },
+            jitter: self.jitter(self.frame),
+            previous_jitter: self.jitter(self.frame.saturating_sub(1)),
             samples: self.samples as u32,
             more_samples: self.samples.fract() as f32,
             log2_origin_step,
@@ -221,6 +222,11 @@ impl Renderer {
         };
         self.prepared.describe(slot, &mut data);
         data
+    }
+
+    /// Where in their pixels the primary rays of a frame go through, where all share one place.
+    fn jitter(&self, frame: u32) -> [f32; 2] {
+        if self.settings.parameters.number("frame.jitter") == 1.0 { sub_pixel(frame) } else { [0.0; 2] }
     }
 
     fn collect(&mut self, slot: usize) {
@@ -247,12 +253,15 @@ impl Renderer {
 
     /// Of the last frame.
     fn count_rays(&self, frame_ms: f64) -> Result<RayCounts, RenderError> {
-        let Some(image) = self.graph.image("ray_count") else { return Ok(RayCounts::default()) };
-        let counts: Vec<u32> = self.gpu.download_image(image)?;
+        let mut counts: Vec<u32> = Vec::new();
+        for image in ["ray_count", "retraced_ray_count"].into_iter().filter_map(|name| self.graph.image(name)) {
+            counts.extend(self.gpu.download_image::<u32>(image)?);
+        }
         let sum = |part: fn(u32) -> u32| counts.iter().map(|&count| u64::from(part(count))).sum::<u64>();
         let (scattered, shadow) = (sum(|count| count & 0xffff), sum(|count| count >> 16));
         let rays = (scattered + shadow) as f64;
-        Ok(RayCounts { scattered, shadow, per_pixel: rays / counts.len() as f64, mrays_per_second: rays / frame_ms * 1e-3 })
+        let pixels = f64::from(self.settings.extent[0]) * f64::from(self.settings.extent[1]);
+        Ok(RayCounts { scattered, shadow, per_pixel: rays / pixels, mrays_per_second: rays / frame_ms * 1e-3 })
     }
 }
 

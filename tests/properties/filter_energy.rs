@@ -20,12 +20,13 @@ fn under_a_constant_sky(base_color: [f32; 4]) -> (Scene, Settings) {
 }
 
 /// Every switch of a filter that changes what it adds up.
-const SWITCHES: [&[(&str, &str)]; 13] = [
+const SWITCHES: [&[(&str, &str)]; 14] = [
     &[],
     &[("hpsf.sums", "float"), ("hpsf.jitter_by", "sampler")],
     &[("hpsf.table", "swapped"), ("hpsf.levels", "3")],
     &[("hpsf.time", "average"), ("hpsf.lookups", "4")],
     &[("hpsf.time", "frame"), ("hpsf.lookups", "0"), ("hpsf.levels", "1")],
+    &[("hpsf.time", "hybrid"), ("hpsf.sums", "float"), ("hpsf.shrink", "0.5")],
     &[("hpsf.neighbours", "on"), ("hpsf.few", "1000"), ("hpsf.width", "4")],
     &[("hpsf.normals", "fingerprint"), ("hpsf.normal_bits", "8"), ("hpsf.normal_jitter", "1")],
     &[("hpsf.keys", "exact"), ("hpsf.normal_bits", "8")],

@@ -51,8 +51,12 @@ vec4 jitter_numbers(uvec2 pixel, uint index) {
 /// `number`, in [0, 1): with hpsf.blend, a place between two levels is of either, the nearer the likelier. The mean over numbers is
 /// log2(width) - 1/2, as that of rounding down is over widths. It takes the line away at which levels change; FLIP of stills hardly feels it
 /// (16 frames, 96x54: cornell 0.1245 to 0.1250, material 0.185 to 0.187), as cells of two levels share the samples there.
+///
+/// With hpsf.shrink, cells are the smaller the more frames there have been, and have the more samples all the same: where cells integrate,
+/// their mean goes to the radiance of a point.
 int level_at(float distance, float number) {
-    float width = parameters.hpsf_width * pixel_footprint(max(distance, 0.0));
+    float shrunk = parameters.hpsf_width * pow(float(frame.frame) + 1.0, -parameters.hpsf_shrink);
+    float width = shrunk * pixel_footprint(max(distance, 0.0));
     return level_of_width(HPSF_BLEND == 1u ? width * exp2(number - 0.5) : width);
 }
 

@@ -1,7 +1,8 @@
 // Sums in fixed point: 64 bits per channel as two words, so that the order of additions does not matter and a picture is the same
 // from run to run.
 //
-// No overflow: a sample is at most 2^SAMPLE_BITS units, and a cell gets at most one sample per pixel and level in a frame. The host sets
+// No overflow: a sample is at most 2^SAMPLE_BITS units, and a cell gets at most one sample per pixel and level in a frame
+// (of retraced paths: fewer). The host sets
 // SAMPLE_BITS = min(40, 64 - ceil(log2(pixels * levels + 1))), so a sum is at most (2^(64 - SAMPLE_BITS) - 1) 2^SAMPLE_BITS < 2^64.
 // With 40 bits and hpsf.largest = 65536 a unit is 2^-24 W/(sr m^2). Values between units are rounded at random, up as often as their
 // fraction says, so that darker samples keep their mean.

@@ -1,10 +1,13 @@
 // Per cell: this frame's sums become a mean, and that joins what earlier frames know (Binder, section 3.4.1).
 //
 // average: exponential moving average with weight hpsf.alpha for the past; adapts, and never converges. integrate: alpha =
-// N_old / (N_old + N_new), the mean over all samples, N_old up to hpsf.samples. frame: this frame alone. The step towards the new mean
+// N_old / (N_old + N_new), the mean over all samples, N_old up to hpsf.samples. hybrid: the same, where filter/hpsf/forget.comp has
+// lowered N_old. detect: the same, without a ray: N_old is lowered where this frame's mean is not by chance so far from the old one.
+// frame: this frame alone. The step towards the new mean
 // is what is added, so the count may stop at its limit without stalling the mean. Cells that no sample has touched for more than hpsf.age
 // frames are evicted (section 3.4.3); with swapped tables, or frame, at once (Meijer, section 4.2.2).
 #include "filter/hpsf/fixed_point.glsl"
+#include "filter/hpsf/forgetting.glsl"
 #include "filter/hpsf/ordered.glsl"
 #include "lib/colour.glsl"
 #include "lib/elements.glsl"
@@ -66,6 +69,14 @@ void store(uint slot, Cell cell) {
     }
 }
 
+/// How far this frame's mean is from that of `known` samples before, beyond what chance explains: one standard error of the difference,
+/// where a sample's standard deviation is its mean over hpsf.adapt.
+float significant_change(Cell old, uint known, Cell new) {
+    float difference = relative_difference(old.mean, new.mean);
+    float error2 = (1.0 / float(known) + 1.0 / float(new.count)) / (parameters.hpsf_adapt * parameters.hpsf_adapt);
+    return sqrt(max(difference * difference - error2, 0.0));
+}
+
 void main() {
     uint slot = element_index();
     if (slot >= CAPACITY || keys.at[KEY_WORDS * slot] == NO_FINGERPRINT) {
@@ -88,6 +99,9 @@ void main() {
         old = unpack_cell(seeds.at[slot]);
     }
     uint known = min(old.count, parameters.hpsf_samples);
+    if (HPSF_TIME == TIME_DETECT && known > 0u) {
+        known = min(known, past_samples(significant_change(old, known, new), new.count));
+    }
     vec3 mean = towards(old, new, 1.0 - alpha_of(known, new.count));
     uint count = min((HPSF_TIME == TIME_FRAME ? 0u : known) + new.count, MOST_SAMPLES);
     store(slot, Cell(all_finite(mean) ? mean : new.mean, count, 0u));

@@ -17,6 +17,8 @@ const uint NORMALS_SIMILAR = 2u;
 const uint TIME_FRAME = 0u;
 const uint TIME_AVERAGE = 1u;
 const uint TIME_INTEGRATE = 2u;
+const uint TIME_HYBRID = 3u;
+const uint TIME_DETECT = 4u;
 const uint TABLE_PERSISTENT = 0u;
 const uint TABLE_SWAPPED = 1u;
 

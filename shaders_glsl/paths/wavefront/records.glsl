@@ -71,7 +71,7 @@ struct StoredVertex {
 };
 
 uvec2 pixel_of_slot(uint slot) {
-    return pixel_in_tile(slot / 32u, slot % 32u);
+    return pixel_in_tile(frame.extent.x, slot / 32u, slot % 32u);
 }
 
 #endif

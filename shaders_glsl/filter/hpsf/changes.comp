@@ -1,0 +1,58 @@
+// Adds each retraced path to the cell of its filter vertex: filter/hpsf/changes.glsl.
+//
+// A path whose vertex is now nearer or farther by more than a cell has met another surface, in front of the old one or behind it. That
+// tells nothing about the light on either, and is left out.
+#include "filter/hpsf/changes.glsl"
+#include "lib/elements.glsl"
+#include "paths/retraced.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(set = 1, binding = 0, scalar) readonly buffer KeptPaths { Kept at[]; } kept;
+layout(set = 1, binding = 1, scalar) readonly buffer RetracedPaths { Retraced at[]; } retraced;
+layout(set = 1, binding = 2, scalar) buffer Changes { uint at[]; } changes;
+
+void add_fixed(uint at, float value, float dither) {
+    uvec2 units = to_fixed(clamp(value, 0.0, parameters.hpsf_largest), dither);
+    uint before = atomicAdd(changes.at[at], units.x);
+    atomicAdd(changes.at[at + 1u], units.y + (before + units.x < before ? 1u : 0u));
+}
+
+void add_path(CellKey key, vec3 now, vec3 before, float dither) {
+    uint slot = change_slot(key);
+    uint fingerprint = hash_fingerprint(key);
+    uint found = atomicCompSwap(changes.at[slot], NO_FINGERPRINT, fingerprint);
+    if (found != NO_FINGERPRINT && found != fingerprint) {
+        return;
+    }
+    atomicAdd(changes.at[slot + 1u], 1u);
+    for (uint channel = 0u; channel < 3u; channel++) {
+        add_fixed(slot + 2u + 2u * channel, now[channel], dither);
+        add_fixed(slot + 8u + 2u * channel, before[channel], dither);
+    }
+}
+
+void main() {
+    uint index = element_index();
+    uvec2 extent = retraced_extent();
+    if (index >= extent.x * extent.y) {
+        return;
+    }
+    Kept before = kept.at[index];
+    if (!(before.distance > 0.0)) {
+        return;
+    }
+    uvec2 pixel = retraced_pixel(uvec2(index % extent.x, index / extent.x), frame.first_sample - 1u);
+    Retraced path = retraced.at[index];
+    vec4 numbers = jitter_numbers(pixel, 0u);
+    float cell = power_of_two(level_at(before.distance, level_number(numbers)));
+    if (!(path.now.distance > 0.0) || abs(path.now.distance - before.distance) > cell) {
+        return;
+    }
+    float view_cosine = dot(camera_ray(frame.previous_camera, pixel, frame.previous_jitter).direction, frame.previous_camera.forward);
+    FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), unpack_normal(path.incident), path.now.distance, view_cosine);
+    float dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
+    for (uint level = 0u; level < parameters.hpsf_levels + FURTHER_LEVELS; level++) {
+        add_path(key_of(point, numbers, int(level)), path.now.radiance, before.radiance, dither);
+    }
+}

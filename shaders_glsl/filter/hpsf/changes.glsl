@@ -1,0 +1,26 @@
+// What retraced paths say about the light in a cell: Binder, section 3.4.1, whose averages of differences are in voxels, too.
+//
+// Keys are those of the filter. Of a cell's paths, this table has the sum of their radiance now and that of the same paths in the last
+// frame: both in fixed point, with the same rounding, so that equal light leaves equal bits. Made anew in every frame.
+//
+// Deviations and why: one slot per key, no probing. Where two cells meet in a slot, the second is not known, and the next coarser cell
+// speaks for it; there are many fewer retraced paths than slots for them.
+#ifndef FILTER_HPSF_CHANGES_GLSL
+#define FILTER_HPSF_CHANGES_GLSL
+
+#include "filter/hpsf/cell.glsl"
+#include "filter/hpsf/fixed_point.glsl"
+
+layout(constant_id = 225) const uint CHANGE_CAPACITY = 1;
+
+/// Levels coarser than the filter's: retraced paths are few, and a change that is found in a large cell is still one.
+const uint FURTHER_LEVELS = 2u;
+
+/// Words of a slot: fingerprint, number of paths, and low and high word of each channel, now and before.
+const uint CHANGE_WORDS = 14u;
+
+uint change_slot(CellKey key) {
+    return CHANGE_WORDS * hash_slot(hash_index(key, true), CHANGE_CAPACITY);
+}
+
+#endif

@@ -1,0 +1,97 @@
+// Where light has changed, cells forget: Binder, section 3.4.1, the hybrid of temporal filtering and integration.
+//
+// How much is in filter/hpsf/forgetting.glsl. Light that stands still has changed by exactly nothing, and is integrated; at a shadow's edge
+// the relative change is near 1, and what is new is all. Each pixel puts its limit to the cells of its sample before they are merged: the
+// smallest one stands, in whatever order.
+#include "filter/hpsf/changes.glsl"
+#include "filter/hpsf/find.glsl"
+#include "filter/hpsf/forgetting.glsl"
+
+layout(local_size_x = 8, local_size_y = 4) in;
+
+layout(constant_id = 223) const bool FLOAT_SUMS = false;
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D filter_position;
+layout(set = 1, binding = 1, r32ui) readonly uniform uimage2D filter_normal;
+layout(set = 1, binding = 2, r32ui) readonly uniform uimage2D filter_incident;
+layout(set = 1, binding = 3, scalar) readonly buffer Changes { uint at[]; } changes;
+layout(set = 1, binding = 4, scalar) readonly buffer Keys { uint at[]; } keys;
+layout(set = 1, binding = 5, scalar) readonly buffer Sums { uint at[]; } sums;
+layout(set = 1, binding = 6, scalar) buffer Cells { uint at[]; } cells;
+layout(set = 1, binding = 7, scalar) buffer Seeds { uint at[]; } seeds;
+/// Relative change of the light at the pixel's vertex, 0..1.
+layout(set = 1, binding = 8, r32f) writeonly uniform image2D hpsf_change;
+
+uint key_word(uint at) {
+    return keys.at[at];
+}
+
+/// Retraced paths that tell of a cell.
+struct Change {
+    uint paths;
+    vec3 now;
+    vec3 before;
+};
+
+vec3 sums_at(uint at) {
+    return vec3(
+        from_fixed(changes.at[at], changes.at[at + 1u]),
+        from_fixed(changes.at[at + 2u], changes.at[at + 3u]),
+        from_fixed(changes.at[at + 4u], changes.at[at + 5u]));
+}
+
+Change change_of_key(CellKey key) {
+    uint slot = change_slot(key);
+    if (changes.at[slot] != hash_fingerprint(key)) {
+        return Change(0u, vec3(0.0), vec3(0.0));
+    }
+    return Change(changes.at[slot + 1u], sums_at(slot + 2u), sums_at(slot + 8u));
+}
+
+/// At a level, or at the next coarser one where enough paths tell of it.
+float change_at(FilterPoint point, vec4 numbers, uint level) {
+    Change best = Change(0u, vec3(0.0), vec3(0.0));
+    for (; level < parameters.hpsf_levels + FURTHER_LEVELS && best.paths < parameters.hpsf_retraced_few; level++) {
+        Change found = change_of_key(key_of(point, numbers, int(level)));
+        if (found.paths > best.paths) {
+            best = found;
+        }
+    }
+    return relative_difference(best.now, best.before);
+}
+
+uint new_samples(uint slot) {
+    return FLOAT_SUMS ? uint(uintBitsToFloat(sums.at[4u * slot + 3u])) : sums.at[8u * slot + 6u];
+}
+
+void forget(CellKey key, float change) {
+    uint slot = find_slot(key);
+    if (slot == NO_SLOT) {
+        return;
+    }
+    uint limit = past_samples(change, new_samples(slot));
+    // The age above the count is the same for all.
+    atomicMin(cells.at[4u * slot + 3u], cells.at[4u * slot + 3u] & ~MOST_SAMPLES | limit);
+    atomicMin(seeds.at[4u * slot + 3u], limit);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
+        return;
+    }
+    vec4 position = imageLoad(filter_position, pixel);
+    float shown = 0.0;
+    if (position.w > 0.0) {
+        FilterPoint point = filter_point(uvec2(pixel), position, imageLoad(filter_normal, pixel).x, imageLoad(filter_incident, pixel).x);
+        vec4 numbers = jitter_numbers(uvec2(pixel), 0u);
+        for (uint level = 0u; level < parameters.hpsf_levels; level++) {
+            float change = change_at(point, numbers, level);
+            if (change > 0.0) {
+                forget(key_of(point, numbers, int(level)), change);
+            }
+            shown = level == 0u ? change : shown;
+        }
+    }
+    imageStore(hpsf_change, pixel, vec4(shown));
+}

@@ -1,0 +1,222 @@
+//! hpsf over time: what stands still is integrated, what changes is followed (Binder, section 3.4.1 and figure 9).
+
+use crate::common;
+use crate::common::floor::{floor, from_above, node};
+use crate::common::render::{builtin, mean, output, render_frames, set, settings};
+use glam::DVec3;
+use pathspace::display::Image;
+use pathspace::gpu::Gpu;
+use pathspace::scene::animation::{Animation, Channel, Interpolation, Keys};
+use pathspace::scene::{Instance, Light, LightKind, Mesh, Scene};
+use pathspace::technique::{Renderer, Settings};
+
+fn with(values: &[(&str, &str)]) -> Settings {
+    let mut settings = settings(64, 36);
+    set(&mut settings, values);
+    settings
+}
+
+fn bits(image: &Image) -> Vec<[u32; 3]> {
+    image.pixels.iter().map(|pixel| pixel.map(f32::to_bits)).collect()
+}
+
+/// A path with the numbers of the last frame finds the very same radiance, so that nothing is forgotten.
+#[test]
+fn a_still_scene_is_integrated_to_the_bit() {
+    let gpu = common::gpu();
+    for (technique, name) in [("hpsf", "material"), ("hpsf+", "cornell")] {
+        let scene = builtin(name);
+        let [integrate, hybrid] = ["integrate", "hybrid"].map(|time| {
+            let settings = with(&[("hpsf.time", time), ("hpsf.cells", "4"), ("hpsf.retrace", "2")]);
+            render_frames(&gpu, &scene, &settings, technique, 4)
+        });
+        assert_eq!(bits(&integrate.picture().unwrap()), bits(&hybrid.picture().unwrap()), "{technique}, {name}");
+    }
+}
+
+/// What the camera does changes no light: paths are retraced from where it was.
+#[test]
+fn a_moving_camera_makes_nothing_forget() {
+    let gpu = common::gpu();
+    let mut scene = builtin("cornell");
+    let camera = scene.cameras[0].node;
+    scene.animation = moving(camera, vec![DVec3::new(0.278, 0.273, -0.8), DVec3::new(0.378, 0.273, -0.7)], Interpolation::Linear);
+    let renderer = render_frames(&gpu, &scene, &with(&[("hpsf.time", "hybrid"), ("hpsf.retrace", "2")]), "hpsf", 4);
+    assert!(output(&renderer, "retraced_ray_count").pixels.iter().any(|pixel| pixel[0] > 0.0));
+    assert!(output(&renderer, "hpsf_change").pixels.iter().all(|pixel| pixel[0] == 0.0));
+}
+
+const FRAMES_PER_SECOND: f64 = 30.0;
+
+/// Keys are a second apart where motion is linear, 8 frames where it is in steps.
+fn moving(node: u32, keys: Vec<DVec3>, interpolation: Interpolation) -> Animation {
+    let apart = if interpolation == Interpolation::Step { f64::from(STEP) / FRAMES_PER_SECOND } else { 1.0 };
+    let times = (0..keys.len()).map(|i| i as f64 * apart).chain([100.0]).take(keys.len() + 1).collect();
+    let last = *keys.last().unwrap();
+    let keys = Keys::Translation(keys.into_iter().chain([last]).collect());
+    Animation::new(vec![Channel { node, times, interpolation, keys }])
+}
+
+/// A floor seen from 1 m above, lit by a small sphere at the node that is added last.
+fn lit_floor(light: DVec3) -> (Scene, u32) {
+    let mut scene = floor(4.0);
+    scene.nodes.push(node(light));
+    let node = scene.nodes.len() as u32 - 1;
+    let kind = LightKind::Sphere { radius: 0.01 };
+    scene.lights.push(Light { name: String::new(), node, color: [20.0; 3], kind, range: None });
+    (scene, node)
+}
+
+/// The light's height changes in this frame.
+const STEP: u32 = 8;
+
+/// How much of a step of the light the picture has taken by the end of each of the first frames with it.
+fn response(gpu: &Gpu, time: &str) -> Vec<f64> {
+    let high = DVec3::new(0.0, 4.0, 0.0);
+    let (mut scene, light) = lit_floor(high);
+    scene.animation = moving(light, vec![high, DVec3::new(0.0, 3.0, 0.0)], Interpolation::Step);
+    let mut settings = with(&[("hpsf.time", time)]);
+    settings.view = from_above(0.5);
+    let shown = |renderer: &Renderer| mean(&output(renderer, "diffuse"));
+    let mut renderer = render_frames(gpu, &scene, &settings, "hpsf", STEP);
+    let before = shown(&renderer);
+    let frames: Vec<f64> = (0..5)
+        .map(|_| {
+            renderer.render_frame().unwrap();
+            renderer.finish().unwrap();
+            shown(&renderer)
+        })
+        .collect();
+    renderer.restart(1, STEP + 1).unwrap();
+    renderer.render_frame().unwrap();
+    renderer.finish().unwrap();
+    let after = shown(&renderer);
+    assert!(after > 1.5 * before, "{before} {after}");
+    frames.into_iter().map(|frame| (frame - before) / (after - before)).collect()
+}
+
+#[test]
+fn the_hybrid_has_nine_tenths_of_a_step_of_the_light_within_four_frames() {
+    let gpu = common::gpu();
+    let [hybrid, detect, average, integrate] = ["hybrid", "detect", "average", "integrate"].map(|time| response(&gpu, time));
+    for (time, frames) in [("hybrid", hybrid), ("detect", detect)] {
+        assert!(frames[..3].iter().any(|&part| part > 0.9), "{time}: {frames:?}");
+    }
+    assert!(average.iter().chain(&integrate).all(|&part| part < 0.9), "{average:?} {integrate:?}");
+}
+
+/// The light moves above a card with an edge at x = 0 in the middle between it and the floor: the shadow's edge moves the other way, as fast.
+fn moving_shadow() -> Scene {
+    let (mut scene, light) = lit_floor(DVec3::new(0.0, 4.0, 0.0));
+    let card = [[-4.0, 0.0, -4.0], [-4.0, 0.0, 4.0], [0.0, 0.0, 4.0], [0.0, 0.0, -4.0]];
+    scene.meshes.push(Mesh {
+        positions: card.to_vec(),
+        normals: vec![[0.0, 1.0, 0.0]; 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        triangle_materials: vec![0, 0],
+        ..Default::default()
+    });
+    scene.nodes.push(node(DVec3::new(0.0, 2.0, 0.0)));
+    scene.instances.push(Instance { mesh: 1, node: scene.nodes.len() as u32 - 1 });
+    let start = DVec3::new(-0.15, 4.0, 0.0);
+    // Two pixels a frame.
+    scene.animation = moving(light, vec![start, start + DVec3::X * FRAMES_PER_SECOND * 2.0 * 0.5 / 36.0], Interpolation::Linear);
+    scene
+}
+
+/// Pixels over which the shadow's edge goes from a tenth to nine tenths of the light, in the mean over rows and seeds.
+fn edge_width(gpu: &Gpu, time: &str) -> f64 {
+    const FRAMES: u32 = 10;
+    let mut settings = with(&[("hpsf.time", time), ("hpsf.width", "4"), ("hpsf.lookups", "4")]);
+    settings.view = from_above(0.5);
+    let mut renderer = render_frames(gpu, &moving_shadow(), &settings, "hpsf", 0);
+    let mut profile = [0.0; 64];
+    for seed in 0..8 {
+        renderer.restart(seed, 0).unwrap();
+        (0..FRAMES).for_each(|_| renderer.render_frame().unwrap());
+        renderer.finish().unwrap();
+        for (i, pixel) in output(&renderer, "diffuse").pixels.iter().enumerate() {
+            profile[i % 64] += f64::from(pixel[0]) / (8.0 * 36.0);
+        }
+    }
+    let most = profile.iter().copied().fold(0.0, f64::max);
+    // The light falls off by little: what lies between is the edge.
+    profile.iter().map(|&value| value / most).filter(|part| (0.1..0.9).contains(part)).count() as f64
+}
+
+#[test]
+fn the_hybrid_keeps_a_moving_shadow_as_sharp_as_one_frame() {
+    let gpu = common::gpu();
+    let [frame, hybrid, average, integrate] = ["frame", "hybrid", "average", "integrate"].map(|time| edge_width(&gpu, time));
+    assert!(hybrid <= 1.25 * frame, "{hybrid} {frame}");
+    assert!(average > 2.0 * frame && integrate > 2.0 * frame, "{average} {integrate} {frame}");
+}
+
+/// Of a still camera: squared errors relative to the truth, the mean over pixels and seeds, after so many frames each.
+fn relmse_after(gpu: &Gpu, values: &[(&str, &str)], truth: &Image, seeds: u32, frames: &[u32]) -> Vec<f64> {
+    let mut settings = settings(32, 18);
+    set(&mut settings, &[("hpsf.cells", "8")]);
+    set(&mut settings, values);
+    let mut renderer = render_frames(gpu, &builtin("cornell"), &settings, "hpsf", 0);
+    let mut errors = vec![0.0; frames.len()];
+    for seed in 1..=seeds {
+        renderer.restart(seed, 0).unwrap();
+        for (error, &frame) in errors.iter_mut().zip(frames) {
+            (renderer.frame()..frame).for_each(|_| renderer.render_frame().unwrap());
+            renderer.finish().unwrap();
+            *error += relmse(&renderer.picture().unwrap(), truth) / f64::from(seeds);
+        }
+    }
+    errors
+}
+
+fn relmse(image: &Image, truth: &Image) -> f64 {
+    let values = image.pixels.iter().flatten().zip(truth.pixels.iter().flatten()).map(|(&a, &b)| (f64::from(a), f64::from(b)));
+    values.map(|(a, b)| (a - b).powi(2) / (b * b + 0.01)).sum::<f64>() / (3 * truth.pixels.len()) as f64
+}
+
+/// What paths through the pixels' centres find on average.
+fn truth_at_centres(gpu: &Gpu) -> Image {
+    const FRAMES: u32 = 2048;
+    let mut renderer = render_frames(gpu, &builtin("cornell"), &settings(32, 18), "unfiltered", 0);
+    renderer.restart(12345, 0).unwrap();
+    let mut mean = vec![[0.0; 3]; 32 * 18];
+    for _ in 0..FRAMES {
+        renderer.render_frame().unwrap();
+        renderer.finish().unwrap();
+        for (mean, pixel) in mean.iter_mut().zip(renderer.picture().unwrap().pixels) {
+            (0..3).for_each(|c| mean[c] += pixel[c] / FRAMES as f32);
+        }
+    }
+    Image::new(32, 18, mean)
+}
+
+/// Cells that stay what they are leave their bias, and the variance of all samples in them, which falls at least as 1 / N. Floors here, with one
+/// level: 0.007 for cells of 4 pixels, 0.013 for 8, without jitter; 0.020 with jitter, 0.016 with it and 4 lookups, which leave less of its noise.
+#[test]
+fn a_still_camera_s_error_falls_as_one_over_frames_to_its_floor() {
+    let gpu = common::gpu();
+    let truth = truth_at_centres(&gpu);
+    let frames = [1, 2, 4, 8, 16, 32, 256];
+    for (jitter, width) in [("0", "4"), ("0.6", "8")] {
+        let values = [("hpsf.jitter", jitter), ("hpsf.levels", "1"), ("hpsf.width", width)];
+        let errors = relmse_after(&gpu, &values, &truth, 4, &frames);
+        let floor = errors[6];
+        assert!(errors[0] > 2.0 * floor, "{errors:?}");
+        for (error, n) in errors.iter().zip(frames) {
+            let bound = 1.03 * floor + (errors[0] - floor) / f64::from(n);
+            assert!(*error <= bound, "jitter {jitter}, width {width}, {n} frames: {error} > {bound}");
+        }
+    }
+}
+
+/// Consistency: no bias stays.
+#[test]
+fn a_still_camera_s_picture_goes_to_the_truth_where_cells_shrink() {
+    let gpu = common::gpu();
+    let truth = truth_at_centres(&gpu);
+    let after = |shrink| relmse_after(&gpu, &[("hpsf.shrink", shrink), ("hpsf.lookups", "4")], &truth, 1, &[32, 512]);
+    let [kept, shrunk] = ["0", "0.4"].map(after);
+    assert!(kept[1] > 0.9 * kept[0], "cells that do not shrink have reached their floor: {kept:?}");
+    assert!(shrunk[1] < 0.1 * kept[1] && shrunk[1] < 0.25 * shrunk[0], "{shrunk:?} {kept:?}");
+}
