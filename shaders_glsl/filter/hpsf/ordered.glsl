@@ -12,6 +12,10 @@
 // Deviations and why: the largest instead of the smallest, so that zeroed memory is empty. Priority decides among cells of earlier frames
 // that nobody has touched in this one; new ones have no history to tell them apart by. The paper's single atomicMin would leave a
 // displaced key's samples without a cell though its next slot may be free, and which ones that hits would depend on the order.
+//
+// Tried: coarser cells first, which stand in for many finer ones (Binder, section 5). In a table of 0.02 cells per pixel (one frame, 96x54,
+// width 8), insertions that fail went from 0.84 to 0.67 on cornell and relMSE from 0.074 to 0.042, but FLIP from 0.118 to 0.126, as what
+// is left is coarse; on the hall nothing improved. First come, first served is at 0.84, 0.073 and 0.115 there.
 #ifndef FILTER_HPSF_ORDERED_GLSL
 #define FILTER_HPSF_ORDERED_GLSL
 
