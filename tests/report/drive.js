@@ -49,6 +49,7 @@
     check("a step, a shortcut, a loss", ["light-tree: 0 → 1", "mis: 1 → 0", "effects: auto → all"].every((text) => prices.includes(text)), prices);
     check("no difference is said to be none", /ray-offset.*no measurable difference.*no measurable difference/s.test(prices), prices);
     check("the front's steps have prices", prices.includes("reference, 1 spp → atrous, 1 spp"), prices);
+    check("hash tables are told of", byId("cost-table").textContent.includes("occupancy"), byId("cost-table").textContent);
     check("predictions are called that", byId("cost-table").textContent.includes("Example GPU 2070prediction, ms"), byId("cost-table").textContent);
     check("4 techniques at 1 spp have bars", all("#pass-bars rect").length >= 14, all("#pass-bars rect").length);
     check("17 measurements are listed with commands", rows("point-table").length === 17 && all("#point-table code").length === 17, rows("point-table").length);
