@@ -152,6 +152,9 @@ struct Parameters {
     //@ hpsf.shrink 0 0..0.5
     /// Cells are frames^-shrink as wide after so many frames of a still camera. Where time is integrated, pictures converge to the truth; with less than 0.5, cells have ever more samples all the same. More noise in the frames before.
     float hpsf_shrink;
+    //@ hpsf.adaptive 0 0..100 standard deviations
+    /// Coarser cells stand for the finer ones that they are made of, as long as these differ by no more than their noise and so much of its spread; 0: finer cells stand where they have hpsf.few samples. More: less noise, blurrier shadows. Eight lookups for each level.
+    float hpsf_adaptive;
     //@ hpsf.retrace 4 1..16 pixels
     /// Side of the squares of which one path is traced again in the next frame, where hpsf.time is hybrid. Smaller: finer borders between what is forgotten and what is kept; 1 / side^2 of the rays more.
     uint hpsf_retrace;

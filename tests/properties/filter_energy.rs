@@ -26,7 +26,7 @@ const SWITCHES: [&[(&str, &str)]; 14] = [
     &[("hpsf.table", "swapped"), ("hpsf.levels", "3")],
     &[("hpsf.time", "average"), ("hpsf.lookups", "4")],
     &[("hpsf.time", "frame"), ("hpsf.lookups", "0"), ("hpsf.levels", "1")],
-    &[("hpsf.time", "hybrid"), ("hpsf.sums", "float"), ("hpsf.shrink", "0.5")],
+    &[("hpsf.time", "hybrid"), ("hpsf.sums", "float"), ("hpsf.shrink", "0.5"), ("hpsf.adaptive", "1")],
     &[("hpsf.neighbours", "on"), ("hpsf.few", "1000"), ("hpsf.width", "4")],
     &[("hpsf.normals", "fingerprint"), ("hpsf.normal_bits", "8"), ("hpsf.normal_jitter", "1")],
     &[("hpsf.keys", "exact"), ("hpsf.normal_bits", "8")],

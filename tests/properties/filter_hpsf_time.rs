@@ -210,6 +210,20 @@ fn a_still_camera_s_error_falls_as_one_over_frames_to_its_floor() {
     }
 }
 
+/// Coarse cells that split at shadows have no more noise in the first frame than those that do not, and much less blur as samples add up.
+#[test]
+fn cells_that_split_where_light_differs_lose_the_blur_of_coarse_ones_and_not_their_quiet() {
+    let gpu = common::gpu();
+    let truth = truth_at_centres(&gpu);
+    let after = |adaptive, width, levels| {
+        let values =
+            [("hpsf.adaptive", adaptive), ("hpsf.width", width), ("hpsf.levels", levels), ("hpsf.lookups", "4"), ("hpsf.few", "4")];
+        relmse_after(&gpu, &values, &truth, 4, &[1, 8])
+    };
+    let (split, coarse) = (after("1", "4", "3"), after("0", "16", "1"));
+    assert!(split[0] < 1.05 * coarse[0] && split[1] < 0.7 * coarse[1], "{split:?} {coarse:?}");
+}
+
 /// Consistency: no bias stays.
 #[test]
 fn a_still_camera_s_picture_goes_to_the_truth_where_cells_shrink() {

@@ -57,10 +57,46 @@ Cell with_neighbours(Cell cell, FilterPoint point, vec4 numbers, int coarser) {
     return cell;
 }
 
+/// Whether the cells that make up a coarser one differ by more than their noise: a chi-square test of equal means, against its expectation
+/// and hpsf.adaptive of its standard deviations, where a sample's standard deviation is its mean.
+bool splits(CellKey key) {
+    Cell children[8];
+    Cell all = EMPTY_CELL;
+    float known = 0.0;
+    for (uint i = 0u; i < 8u; i++) {
+        children[i] = cell_of_key(child_of(key, i));
+        all = add_cells(all, children[i]);
+        known += children[i].count > 0u ? 1.0 : 0.0;
+    }
+    float spread = 0.0;
+    for (uint i = 0u; i < 8u; i++) {
+        float difference = dot(children[i].mean - all.mean, vec3(1.0));
+        spread += float(children[i].count) * difference * difference;
+    }
+    float mean = dot(all.mean, vec3(1.0));
+    float freedom = known - 1.0;
+    return freedom > 0.0 && spread > mean * mean * (freedom + parameters.hpsf_adaptive * sqrt(2.0 * freedom));
+}
+
+/// The coarsest level whose cell does not split (Binder, section 3.1.3). The children decide, all alike: a choice by how far one cell is from
+/// its parent would keep exactly the cells that chance has made stand out.
+///
+/// Against cells that all are as wide as the coarsest (cornell, 128x72, one frame, FLIP and relMSE; 4 to 16 pixels): 0.101 and 0.0105 instead of
+/// 0.114 and 0.0113; after 16 frames 0.061 and 0.0048 instead of 0.102 and 0.0092. Cells that all are as fine as the finest do as well
+/// there: 0.084 and 0.0095, 0.049 and 0.0036.
+uint adaptive_level(FilterPoint point, vec4 numbers) {
+    uint level = parameters.hpsf_levels - 1u;
+    while (level > 0u && splits(key_of(point, numbers, int(level)))) {
+        level--;
+    }
+    return level;
+}
+
 /// What is known at one jittered place: of the finest level that has enough samples, or else of the coarsest one.
 Cell look_up(FilterPoint point, vec4 numbers) {
     Cell best = EMPTY_CELL;
-    for (uint level = 0u; level < parameters.hpsf_levels && best.count < max(parameters.hpsf_few, 1u); level++) {
+    uint finest = parameters.hpsf_adaptive > 0.0 ? adaptive_level(point, numbers) : 0u;
+    for (uint level = finest; level < parameters.hpsf_levels && best.count < max(parameters.hpsf_few, 1u); level++) {
         CellKey key = key_of(point, numbers, int(level));
         Cell cell = cell_of_key(key);
         if (HPSF_NORMALS == NORMALS_SIMILAR && cell.count < parameters.hpsf_few) {
