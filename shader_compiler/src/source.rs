@@ -82,9 +82,14 @@ pub fn find_variants(root: &Path) -> Result<Vec<Variant>, CompileError> {
     for path in files_below(root, "comp")? {
         let file = path.strip_prefix(root).expect("found below root").to_owned();
         let stem = file.with_extension("").to_string_lossy().replace('\\', "/");
-        let traces = transitive_includes(root, &path)?.contains(Path::new(TRACE_INCLUDE));
+        let includes = transitive_includes(root, &path)?;
+        let traces = includes.contains(Path::new(TRACE_INCLUDE));
         let structures = if traces { structures.iter().cloned().map(Some).collect() } else { vec![None] };
-        let precisions = if read(&path)?.contains(COLOR_FORMAT) { Precision::ALL.map(Some).to_vec() } else { vec![None] };
+        let mut stores_colour = has_colour_image(&read(&path)?);
+        for include in includes {
+            stores_colour |= has_colour_image(&read(&root.join(include))?);
+        }
+        let precisions = if stores_colour { Precision::ALL.map(Some).to_vec() } else { vec![None] };
         for structure in structures {
             let variant = |&precision| Variant { file: file.clone(), stem: stem.clone(), structure: structure.clone(), precision };
             variants.extend(precisions.iter().map(variant));
@@ -92,6 +97,10 @@ pub fn find_variants(root: &Path) -> Result<Vec<Variant>, CompileError> {
     }
     variants.sort_by_key(Variant::name);
     Ok(variants)
+}
+
+fn has_colour_image(source: &str) -> bool {
+    source.lines().any(|line| line.starts_with("layout(") && line.contains(COLOR_FORMAT))
 }
 
 /// Changes when the kernel, or anything that it includes, changes.

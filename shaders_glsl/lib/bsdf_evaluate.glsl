@@ -18,12 +18,17 @@ struct Techniques {
 
 /// By the albedo that each lobe has about `wo`: Schlick at the mean normal, less steep on rough surfaces (Lagarde 2011).
 Techniques sampling_techniques(Surface s, vec3 wo) {
+    if (s.part == PART_DIFFUSE) {
+        return Techniques(1.0, 0.0, 0.0, 0.0, 0.0);
+    }
     float cos_o = max(dot(s.normal_ws, wo), 0.0);
     float rise = schlick_rise(cos_o) * (1.0 - sqrt(s.alpha));
     vec3 dielectric = mix(s.dielectric_f0, vec3(s.dielectric_f90), rise);
     vec3 reflected = s.metallic * mix(s.base_color, vec3(1.0), rise) + opaque_part(s) * dielectric;
     Techniques p = Techniques(0.0, 0.0, 0.0, 0.0, 0.0);
-    p.diffuse = max_component(diffuse_albedo(s)) * max(1.0 - max_component(dielectric), 0.1);
+    if (s.part == PART_WHOLE) {
+        p.diffuse = max_component(diffuse_albedo(s)) * max(1.0 - max_component(dielectric), 0.1);
+    }
     p.reflection = EFFECT_REFLECTION ? max_component(reflected) : 0.0;
     p.glass = glass_part(s) * mix(max_component(s.base_color), 1.0, 0.1);
     if (COMPENSATE_ENERGY && EFFECT_REFLECTION) {
@@ -166,6 +171,8 @@ BsdfValue evaluate_with(Surface s, vec3 wo, vec3 wi, Techniques p) {
             add_clearcoat(s, wo, wi, p, value);
         }
     }
+    value.diffuse = s.part == PART_SPECULAR ? 0.0 : value.diffuse;
+    value.specular = s.part == PART_DIFFUSE ? vec3(0.0) : value.specular;
     return value;
 }
 

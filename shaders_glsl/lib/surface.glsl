@@ -11,6 +11,12 @@
 #include "lib/fresnel.glsl"
 #include "lib/microfacet.glsl"
 
+/// Which lobes of a surface count.
+const uint PART_WHOLE = 0u;
+const uint PART_DIFFUSE = 1u;
+/// All but the diffuse one.
+const uint PART_SPECULAR = 2u;
+
 struct Surface {
     /// Unit, on the side of the viewer.
     vec3 geometric_normal_ws;
@@ -34,11 +40,13 @@ struct Surface {
     /// 0 on the inner side of a volume.
     float clearcoat;
     float clearcoat_alpha;
+    /// PART_*: what is evaluated and sampled; their values add up to the whole's.
+    uint part;
 };
 
 /// White Lambert without reflection.
 Surface surface_default(vec3 normal_ws) {
-    return Surface(normal_ws, normal_ws, normal_ws, vec3(1.0), 0.0, 1.0, vec3(0.0), 0.0, 0.0, 1.0, true, 0.0, 0.0);
+    return Surface(normal_ws, normal_ws, normal_ws, vec3(1.0), 0.0, 1.0, vec3(0.0), 0.0, 0.0, 1.0, true, 0.0, 0.0, PART_WHOLE);
 }
 
 const bool EFFECT_TRANSMISSION = EFFECT_SMOOTH_TRANSMISSION || EFFECT_ROUGH_TRANSMISSION;

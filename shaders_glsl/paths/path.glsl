@@ -20,6 +20,7 @@
 #include "paths/light_candidates.glsl"
 #include "paths/primary.glsl"
 #include "paths/terms.glsl"
+#include "paths/vertices.glsl"
 
 /// Pairs of sample dimensions that a vertex takes: light, point on it, direction, lobe and roulette.
 const uint PAIRS_PER_VERTEX = 4u;
@@ -48,11 +49,21 @@ struct Path {
     float eta_scale;
     /// Vertices before the ray's origin: 0 for the camera's ray.
     uint vertex;
+    /// The last filter vertex so far, or NO_VERTEX less the diffuse vertices that are still to be passed in front of the first one.
     uint filter_vertex;
     /// Length of all rays that have arrived, metres.
     float travelled;
     Sampler numbers;
+#ifdef VERTEX_LIST
+    /// Of the pixel in the list of vertices.
+    uint place;
+#endif
 };
+
+/// The path has no filter vertex so far.
+bool is_in_front(Path path) {
+    return path.filter_vertex >= NO_VERTEX - HPSF_VERTEX;
+}
 
 /// Light that waits for its shadow ray; none where the ray's t_max is below 0.
 struct Pending {
@@ -109,7 +120,10 @@ Path path_from(Camera camera, vec2 jitter, uvec2 pixel, uint sample_index) {
     path.delta = true;
     path.eta_scale = 1.0;
     path.vertex = 0u;
-    path.filter_vertex = NO_VERTEX;
+    path.filter_vertex = NO_VERTEX - HPSF_VERTEX;
+#ifdef VERTEX_LIST
+    path.place = pixel.y * frame.extent.x + pixel.x;
+#endif
     path.travelled = 0.0;
     return path;
 }
@@ -132,9 +146,12 @@ float emission_weight(Path path, float light_pdf) {
 }
 
 /// Where light belongs that the path's ray has found. `from_light`: straight, not reflected.
-uint term_of(Path path, bool from_light) {
-    if (path.filter_vertex == NO_VERTEX) {
+uint term_of(Path path, Terms terms, bool from_light) {
+    if (is_in_front(path)) {
         return TERM_BEFORE;
+    }
+    if (vertices_behind(terms) > 0u) {
+        return TERM_BEHIND;
     }
     return from_light && path.vertex == path.filter_vertex + 1u ? TERM_DIRECT : TERM_INDIRECT;
 }
@@ -148,7 +165,7 @@ vec3 clamp_indirect(vec3 radiance, uint vertex) {
 /// Adds what the path's ray has found: radiance emitted towards its origin.
 void add_emission(Path path, vec3 radiance, float light_pdf, inout Terms terms) {
     vec3 arrived = clamp_indirect(path.throughput * radiance * emission_weight(path, light_pdf), path.vertex);
-    add_term(terms, term_of(path, true), path.diffuse_weight, path.specular_weight, arrived);
+    add_term(terms, term_of(path, terms, true), path.diffuse_weight, path.specular_weight, arrived);
 }
 
 /// The path's ray has left the scene.
@@ -160,7 +177,7 @@ void add_environment(Path path, inout Terms terms) {
 const Ray NO_RAY = Ray(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), -1.0);
 
 /// Looks for light at a vertex, by one of `rays` shadow rays; nothing waits where there is none to be found.
-Pending sample_direct(Path path, HitPoint point, vec3 wo, vec4 u, float selection, float rays) {
+Pending sample_direct(Path path, Terms terms, HitPoint point, vec3 wo, vec4 u, float selection, float rays) {
     Pending pending;
     pending.ray = NO_RAY;
     ChosenLight light;
@@ -171,12 +188,12 @@ Pending sample_direct(Path path, HitPoint point, vec3 wo, vec4 u, float selectio
     vec3 radiance = light.radiance / rays;
     vec3 albedo = diffuse_albedo(point.surface);
     if (path.vertex == path.filter_vertex) {
-        pending.term = TERM_DIRECT;
+        pending.term = vertices_behind(terms) > 0u ? TERM_BEHIND : TERM_DIRECT;
         pending.diffuse_weight = value.diffuse;
         pending.specular_weight = path.throughput * value.specular;
         pending.radiance = radiance;
     } else {
-        pending.term = term_of(path, false);
+        pending.term = term_of(path, terms, false);
         pending.diffuse_weight = path.diffuse_weight;
         pending.specular_weight = path.specular_weight;
         pending.radiance = clamp_indirect(path.throughput * (albedo * value.diffuse + value.specular) * radiance, path.vertex + 1u);
@@ -188,8 +205,8 @@ Pending sample_direct(Path path, HitPoint point, vec3 wo, vec4 u, float selectio
     return pending;
 }
 
-/// Chooses the path's next ray; false where the path ends here. `attenuation` is that of the path's terms.
-bool scatter(inout Path path, HitPoint point, vec3 wo, vec4 u, vec3 attenuation) {
+/// Chooses the path's next ray; false where the path ends here.
+bool scatter(inout Path path, Terms terms, HitPoint point, vec3 wo, vec4 u) {
     BsdfSample next;
     if (!bsdf_sample(point.surface, wo, u.xyz, next)) {
         return false;
@@ -207,6 +224,8 @@ bool scatter(inout Path path, HitPoint point, vec3 wo, vec4 u, vec3 attenuation)
     path.delta = next.delta;
     path.ray = Ray(leave_surface(point.origin, next.direction), 0.0, next.direction, FAR_AWAY);
 
+    // Behind the first filter vertex a path works for cells, however little of it the pixel sees.
+    vec3 attenuation = vertices_behind(terms) > 0u ? vec3(1.0) : terms.attenuation;
     vec3 total = path.throughput * (attenuation * path.diffuse_weight + path.specular_weight);
     float survival = max(total.r, max(total.g, total.b)) * path.eta_scale;
     if (!(survival > 0.0)) {
@@ -220,15 +239,55 @@ bool scatter(inout Path path, HitPoint point, vec3 wo, vec4 u, vec3 attenuation)
     return true;
 }
 
+bool is_diffuse(HitPoint point) {
+    return max_component(diffuse_albedo(point.surface)) > 0.0;
+}
+
+/// The path arrives at a surface with a diffuse lobe, and finds it to be a filter vertex or not. False where the path ends there.
+bool arrive_at_diffuse(inout Path path, inout HitPoint point, inout Terms terms) {
+    vec3 albedo = diffuse_albedo(point.surface);
+    FilterVertex vertex = FilterVertex(point.origin.position, point.surface.normal_ws, path.ray.direction, path.travelled);
+    if (is_in_front(path)) {
+        if (path.filter_vertex < NO_VERTEX) {
+            path.filter_vertex++;
+            return true;
+        }
+        path.filter_vertex = path.vertex;
+        terms.attenuation = path.throughput * albedo;
+        terms.vertex = vertex;
+        return true;
+    }
+#ifdef VERTEX_LIST
+    if (LAST_IS_READ && next_is_last(terms) && !is_known(path.place, terms.vertices, vertex)) {
+        return true;
+    }
+    float chance = sampling_techniques(point.surface, -path.ray.direction).diffuse;
+    path.numbers.dimension = SELECTION_PAIRS + 16u * path.vertex + 15u;
+    if (!(sample_1d(path.numbers) < chance)) {
+        point.surface.part = PART_SPECULAR;
+        path.throughput /= 1.0 - chance;
+        return true;
+    }
+    point.surface.part = PART_DIFFUSE;
+    begin_vertex(path.place, vertex, path.throughput * albedo / chance, path.diffuse_weight, path.specular_weight, terms);
+    path.filter_vertex = path.vertex;
+    path.throughput = vec3(1.0);
+    path.specular_weight = vec3(0.0);
+    return !(LAST_IS_READ && list_ends(terms));
+#else
+    return true;
+#endif
+}
+
 /// The path arrives at a surface: adds what it emits. False where the path ends there.
-bool arrive(inout Path path, Hit hit, HitPoint point, inout Terms terms) {
+bool arrive(inout Path path, Hit hit, inout HitPoint point, inout Terms terms) {
     MaterialBuffer materials = MaterialBuffer(frame.materials);
     path.travelled += hit.t;
     if (EFFECT_TRANSMISSION && !point.on_front && !point.surface.thin) {
         path.throughput *= exp(-materials.at[point.material].absorption * hit.t);
     }
     if (EFFECT_UNLIT && (materials.at[point.material].flags & MATERIAL_UNLIT) != 0u) {
-        add_term(terms, term_of(path, false), path.diffuse_weight, path.specular_weight, path.throughput * point.surface.base_color);
+        add_term(terms, term_of(path, terms, false), path.diffuse_weight, path.specular_weight, path.throughput * point.surface.base_color);
         return false;
     }
     if (any(greaterThan(point.emission, vec3(0.0)))) {
@@ -236,13 +295,10 @@ bool arrive(inout Path path, Hit hit, HitPoint point, inout Terms terms) {
         triangle_light_pdf(hit.instance, hit.primitive, path.ray.direction, hit.t, light_pdf);
         add_emission(path, point.emission, light_pdf, terms);
     }
-    vec3 albedo = diffuse_albedo(point.surface);
-    if (path.filter_vertex == NO_VERTEX && max(albedo.r, max(albedo.g, albedo.b)) > 0.0) {
-        path.filter_vertex = path.vertex;
-        terms.attenuation = path.throughput * albedo;
-        terms.vertex = FilterVertex(point.origin.position, point.surface.normal_ws, path.ray.direction, path.travelled);
+    if (path.vertex > parameters.max_bounces || list_ends(terms)) {
+        return false;
     }
-    return path.vertex <= parameters.max_bounces;
+    return !is_diffuse(point) || arrive_at_diffuse(path, point, terms);
 }
 
 /// A sphere light in front of what the ray has hit. It stops the ray.
@@ -288,14 +344,14 @@ bool visit(inout Path path, Hit hit, bool arrives, inout uint shadow_rays, inout
     light.xy = sample_2d(path.numbers);
     light.zw = sample_2d(path.numbers);
     path.numbers.dimension = SELECTION_PAIRS + 16u * path.vertex + shadow_rays;
-    pending = sample_direct(path, point, wo, light, sample_1d(path.numbers), float(rays));
+    pending = sample_direct(path, terms, point, wo, light, sample_1d(path.numbers), float(rays));
     pending.alpha_seed = alpha_seed(path) + 1u + shadow_rays;
     if (shadow_rays > 0u) {
         return true;
     }
     path.numbers.dimension = 3u + PAIRS_PER_VERTEX * path.vertex;
     vec2 direction = sample_2d(path.numbers);
-    bool goes_on = scatter(path, point, wo, vec4(direction, sample_2d(path.numbers)), terms.attenuation);
+    bool goes_on = scatter(path, terms, point, wo, vec4(direction, sample_2d(path.numbers)));
     path.vertex++;
     return goes_on;
 }

@@ -28,6 +28,17 @@ struct FilterVertex {
     float travelled;
 };
 
+#ifdef VERTEX_LIST
+/// A filter vertex behind the first one: paths/vertices.glsl.
+struct PathVertex {
+    FilterVertex at;
+    /// What becomes of its diffuse lobe's radiance on the way to the one of the vertex before.
+    vec3 attenuation;
+    /// What its diffuse lobe receives, but for what comes through the next vertex of the list.
+    vec3 radiance;
+};
+#endif
+
 struct Terms {
     vec3 before;
     vec3 attenuation;
@@ -36,20 +47,40 @@ struct Terms {
     vec3 specular_direct;
     vec3 specular_indirect;
     FilterVertex vertex;
+#ifdef VERTEX_LIST
+    /// Vertices of the path's list so far, and the last one of them.
+    uint vertices;
+    PathVertex behind;
+    /// Of the first one's radiance on the way to `specular_indirect`.
+    vec3 specular_attenuation;
+#endif
 };
 
 /// Where a contribution belongs.
 const uint TERM_BEFORE = 0u;
 const uint TERM_DIRECT = 1u;
 const uint TERM_INDIRECT = 2u;
+/// To the last vertex of the list.
+const uint TERM_BEHIND = 3u;
 
 Terms no_terms() {
     FilterVertex none = FilterVertex(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+#ifdef VERTEX_LIST
+    PathVertex nothing = PathVertex(none, vec3(0.0), vec3(0.0));
+    return Terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), none, 0u, nothing, vec3(0.0));
+#else
     return Terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), none);
+#endif
 }
 
 /// Radiance that arrives through the filter vertex's lobes with these weights; in front of it the weights are 0 and 1.
 void add_term(inout Terms terms, uint term, float diffuse_weight, vec3 specular_weight, vec3 radiance) {
+#ifdef VERTEX_LIST
+    if (term == TERM_BEHIND) {
+        terms.behind.radiance += diffuse_weight * radiance;
+        return;
+    }
+#endif
 #ifdef SEPARATE_TERMS
     if (term == TERM_DIRECT) {
         terms.diffuse_direct += diffuse_weight * radiance;

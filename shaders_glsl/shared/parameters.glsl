@@ -89,6 +89,18 @@ layout(constant_id = 145) const uint HPSF_BLEND = 0;
 //@ hpsf.temporal off off|on
 /// Pictures of earlier frames, moved by motion vectors, are averaged with this one: antialiasing with frame.jitter, less noise in what is not filtered; lag. Costs a primary ray and a pass.
 layout(constant_id = 137) const uint HPSF_TEMPORAL = 0;
+//@ hpsf.vertex first first|second|third
+/// Which of a path's diffuse vertices is filtered. Second resembles final gathering (Binder, fig. 10): no borders or lost shadows in what is seen, whose own light stays as noisy as the path found it. No cost.
+layout(constant_id = 150) const uint HPSF_VERTEX = 0;
+//@ nhpsf.form balanced balanced|paper
+/// What a vertex sends to the one before: what its cell knew in the last frame, or that and what the path itself has found there (Meijer, section 4.3), by which all indirect light counts twice. The same rays.
+layout(constant_id = 151) const uint NHPSF_FORM = 0;
+//@ nhpsf.distance camera camera|path
+/// By what the cells of vertices behind the first one grow: their distance from the camera, so that they share the cells of the picture, or the length of the path, so that they have wider ones. No cost.
+layout(constant_id = 152) const uint NHPSF_DISTANCE = 0;
+//@ nhpsf.unknown trace trace|dark
+/// Where no cell knows the vertex that a path would end at: it goes on as without a filter, or nothing comes from there, so that depth grows with frames alone. Trace costs whole paths in the first frame, and where the camera shows what is new.
+layout(constant_id = 153) const uint NHPSF_UNKNOWN = 0;
 
 struct Parameters {
     //@ paths.max_bounces 8 0..64 bounces
@@ -170,6 +182,9 @@ struct Parameters {
     //@ hpsf.samples 65536 1..16777215 samples
     /// Samples of the past that count at most where hpsf.time is integrate. Fewer follow changes sooner, and leave more noise.
     uint hpsf_samples;
+    //@ hpsf.recency 0 0..16
+    /// Where hpsf.time is integrate: how much more later frames count, as a power of their number. Cells that know of each other's light (nhpsf) forget sooner what they did not know at first; 0.3 times the variance more at 1, 0.8 at 2.
+    float hpsf_recency;
     //@ hpsf.age 8 0..254 frames
     /// A persistent table evicts cells that no sample has touched for longer. 0: unless touched in every frame.
     uint hpsf_age;
@@ -194,6 +209,12 @@ struct Parameters {
     //@ hpsf.smooth_few 256 1..100000 samples
     /// A pixel whose cells know more samples than this is smoothed so many times less. Fewer stay sharper over frames, and noisier.
     uint hpsf_smooth_few;
+    //@ nhpsf.vertices 2 1..16 vertices
+    /// Diffuse vertices of a path whose samples enter cells; one more is only looked up. More fill hidden cells and bring light from farther in a frame, at a shadow ray, a scattered ray and 48 bytes each. 1: cells out of view are unknown. At most paths.max_bounces.
+    uint nhpsf_vertices;
+    //@ nhpsf.wider 0 0..8 levels
+    /// Cells of the vertices behind the first one are so many powers of two wider. More: less noise, more light from around corners.
+    uint nhpsf_wider;
     //@ temporal.frames 64 1..1000
     /// Frames that count at most where hpsf.temporal is on. Fewer follow changes sooner, and leave more noise.
     float temporal_frames;

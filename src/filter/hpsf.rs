@@ -11,10 +11,12 @@
 
 mod changes;
 
+use super::nhpsf;
 use crate::frame::{BufferHandle, FrameBuilder, History, ImageHandle, PassBuilder};
 use crate::gpu::{GpuError, vk};
 use crate::paths::Retraced;
 use crate::paths::terms::Terms;
+use crate::paths::vertices::PathVertices;
 
 /// Specialization constants.
 const CAPACITY: u32 = 221;
@@ -30,7 +32,7 @@ const WORD: u64 = 4;
 const CELL: u64 = 16;
 
 /// A float plus 1 is the same float from here on: all of a frame's samples may meet in one cell.
-const MOST_COUNTED_IN_FLOATS: u32 = 1 << 24;
+const MOST_COUNTED_IN_FLOATS: u64 = 1 << 24;
 
 /// What the table depends on.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +40,8 @@ pub struct Options {
     pub cells_per_pixel: f64,
     /// Cells that a sample is added to.
     pub levels: u32,
+    /// Vertices of a pixel's path that are added to cells.
+    pub vertices: u32,
     /// Two tables that change places with every frame.
     pub swapped: bool,
     /// Keys of two words that hold all of the key, not a hash of it.
@@ -50,6 +54,14 @@ pub struct Options {
     pub float_sums: bool,
     /// Put out [`STATISTICS`].
     pub statistics: bool,
+}
+
+/// What paths have found.
+#[derive(Debug, Clone, Copy)]
+pub struct Paths {
+    pub terms: Terms,
+    /// Vertices behind the first one, which send it what the last frame's cells know of them, and are filtered in the same cells.
+    pub behind: Option<PathVertices>,
     /// Paths of the last frame that were traced again: cells forget where they tell of a change.
     pub retraced: Option<Retraced>,
 }
@@ -61,7 +73,8 @@ pub struct Filtered {
     pub samples: ImageHandle,
 }
 
-struct Table {
+/// Cells of the world, and what is known of them.
+pub struct Table {
     capacity: u32,
     keys: History<BufferHandle>,
     /// Of a slot.
@@ -70,35 +83,18 @@ struct Table {
     seeds: BufferHandle,
     sums: BufferHandle,
     float_sums: bool,
-    /// Of a frame's samples: at most one per pixel and level.
+    options: Options,
+    /// Of a frame's samples: at most one per pixel, vertex and level.
     insertions: u64,
 }
 
-pub fn add(frame: &mut FrameBuilder, terms: &Terms, options: Options) -> Result<Filtered, GpuError> {
-    let table = Table::new(frame, options)?;
-    if options.swapped {
-        frame.fill("hpsf clear", table.keys.current, 0);
-    }
-    if options.ordered || options.evicts {
-        table.give_slots(frame, terms, options.evicts)?;
-    }
-    table.collect(frame, terms)?;
-    if let Some(retraced) = options.retraced {
-        changes::add(frame, &table, terms, retraced, options.levels)?;
-    }
-    table.merge(frame)?;
-    if options.statistics {
-        table.statistics(frame, terms)?;
-    }
-    table.resolve(frame, terms)
-}
-
 impl Table {
-    fn new(frame: &mut FrameBuilder, options: Options) -> Result<Self, GpuError> {
-        let (atomics, countable) = (frame.gpu().capabilities().float_atomics, frame.pixels() <= MOST_COUNTED_IN_FLOATS);
+    pub fn new(frame: &mut FrameBuilder, options: Options) -> Result<Self, GpuError> {
+        let most_samples = u64::from(frame.pixels()) * u64::from(options.vertices);
+        let (atomics, countable) = (frame.gpu().capabilities().float_atomics, most_samples <= MOST_COUNTED_IN_FLOATS);
         let float_sums = options.float_sums && atomics && countable;
         if options.float_sums && !float_sums {
-            let why = if atomics { "a float cannot count so many pixels" } else { "the device has no float atomics" };
+            let why = if atomics { "a float cannot count so many samples" } else { "the device has no float atomics" };
             tracing::warn!("{why}: hpsf sums in fixed point");
         }
         let sums = if float_sums { 16 } else { 32 };
@@ -118,26 +114,84 @@ impl Table {
             seeds: frame.buffer("hpsf seeds", capacity * CELL)?,
             sums: frame.kept_buffer("hpsf sums", capacity * sums)?,
             float_sums,
-            insertions: u64::from(frame.pixels()) * u64::from(options.levels),
+            options,
+            insertions: u64::from(frame.pixels()) * u64::from(options.levels) * u64::from(options.vertices),
         })
     }
 
-    fn give_slots(&self, frame: &mut FrameBuilder, terms: &Terms, evicts: bool) -> Result<(), GpuError> {
-        let touched = self.insertions * self.key_bytes;
-        let pass = reads_vertices(frame.pass("hpsf claim", "filter/hpsf/claim_ordered"), terms).constant(CAPACITY, self.capacity);
-        pass.updates("keys", self.keys.current).touching(touched).add()?;
-        if evicts {
-            let pass = reads_vertices(frame.pass("hpsf evict", "filter/hpsf/evict"), terms).constant(CAPACITY, self.capacity);
-            pass.updates("keys", self.keys.current).touching(touched).writes("cells", self.cells.current).touching(0).add()?;
+    pub fn filter(&self, frame: &mut FrameBuilder, paths: &Paths) -> Result<Filtered, GpuError> {
+        let terms = &paths.terms;
+        if let Some(vertices) = &paths.behind {
+            nhpsf::transport(frame, self, terms, vertices)?;
+        }
+        if self.options.swapped {
+            frame.fill("hpsf clear", self.keys.current, 0);
+        }
+        let behind = paths.behind.as_ref().filter(|vertices| vertices.options.sampled() > 0);
+        if self.options.ordered || self.options.evicts {
+            self.give_slots(frame, terms, behind)?;
+        }
+        self.collect(frame, terms)?;
+        if let Some(vertices) = behind {
+            nhpsf::collect(frame, self, vertices)?;
+        }
+        if let Some(retraced) = paths.retraced {
+            changes::add(frame, self, terms, retraced, self.options.levels)?;
+        }
+        self.merge(frame)?;
+        if self.options.statistics {
+            self.statistics(frame, terms)?;
+        }
+        self.resolve(frame, terms)
+    }
+
+    fn give_slots(&self, frame: &mut FrameBuilder, terms: &Terms, behind: Option<&PathVertices>) -> Result<(), GpuError> {
+        let samples = frame.pixels();
+        self.claim(reads_vertices(frame.pass("hpsf claim", "filter/hpsf/claim_ordered"), terms), samples)?;
+        if let Some(vertices) = behind {
+            nhpsf::claim(frame, self, vertices)?;
+        }
+        if self.options.evicts {
+            self.evict(reads_vertices(frame.pass("hpsf evict", "filter/hpsf/evict"), terms), samples)?;
+            if let Some(vertices) = behind {
+                nhpsf::evict(frame, self, vertices)?;
+            }
         }
         Ok(())
     }
 
+    /// A pass that gives slots to new keys.
+    pub(super) fn claim(&self, pass: PassBuilder, samples: u32) -> Result<(), GpuError> {
+        let touched = u64::from(samples) * u64::from(self.options.levels) * self.key_bytes;
+        pass.constant(CAPACITY, self.capacity).updates("keys", self.keys.current).touching(touched).add()
+    }
+
+    /// A pass that gives them those of cells that nobody has touched.
+    pub(super) fn evict(&self, pass: PassBuilder, samples: u32) -> Result<(), GpuError> {
+        self.claim(pass.writes("cells", self.cells.current).touching(0), samples)
+    }
+
     fn collect(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {
-        let (stem, sum) = if self.float_sums { ("filter/hpsf/collect_float", 16) } else { ("filter/hpsf/collect_fixed", 28) };
-        let touched = self.insertions;
-        let pass = reads_samples(frame.pass("hpsf collect", stem), terms).constant(CAPACITY, self.capacity);
-        let pass = pass.constant(SAMPLE_BITS, sample_bits(self.insertions));
+        let stem = self.stem("filter/hpsf/collect_float", "filter/hpsf/collect_fixed");
+        let samples = frame.pixels();
+        self.insert(reads_samples(frame.pass("hpsf collect", stem), terms), samples)
+    }
+
+    /// The stem that is made for this table.
+    pub(super) fn stem(&self, float_sums: &'static str, fixed_sums: &'static str) -> &'static str {
+        if self.float_sums { float_sums } else { fixed_sums }
+    }
+
+    /// A pass that looks keys up, as `known_keys` and `known_cells`, in what earlier frames have left.
+    pub fn looks_up<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, keys: u64) -> PassBuilder<'b, 'a> {
+        let pass = pass.constant(CAPACITY, self.capacity).reads("known_keys", self.keys.previous);
+        pass.touching(keys * self.key_bytes).reads("known_cells", self.cells.previous).touching(keys * CELL)
+    }
+
+    /// A pass that adds samples to cells of each level.
+    pub(super) fn insert(&self, pass: PassBuilder, samples: u32) -> Result<(), GpuError> {
+        let (touched, sum) = (u64::from(samples) * u64::from(self.options.levels), if self.float_sums { 16 } else { 28 });
+        let pass = pass.constant(CAPACITY, self.capacity).constant(SAMPLE_BITS, sample_bits(self.insertions));
         let pass = pass.updates("keys", self.keys.current).touching(touched * self.key_bytes);
         let pass = pass.updates("sums", self.sums).touching(touched * sum).writes("seeds", self.seeds);
         pass.reads("known_cells", self.cells.previous).reads("known_keys", self.keys.previous).add()

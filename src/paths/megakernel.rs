@@ -1,11 +1,13 @@
 //! Whole paths in one kernel: shaders_glsl/paths/megakernel.glsl, with radiance summed up (megakernel.comp) or its terms apart
-//! (megakernel_terms.comp; Meijer, section 4.1, algorithm 1), and with some of the last frame's paths traced again (megakernel_retraced.comp).
+//! (megakernel_terms.comp; Meijer, section 4.1, algorithm 1), with some of the last frame's paths traced again (megakernel_retraced.comp), or
+//! with the vertices behind the filter vertex (megakernel_vertices.comp).
 //!
 //! Takes the scene. Also returns `ray_count`: scattered rays in the low, shadow rays in the high 16 bits. No history. Writes 20 bytes per
 //! pixel, or 124 with terms (12 and 76 at fp16), 24 of them for the filter vertex; traces up to 2 (bounces + 1) + 1 rays per sample.
 
 use super::terms::Terms;
-use crate::frame::{BufferHandle, FrameBuilder, ImageHandle};
+use super::vertices::{ListOptions, PathVertices};
+use crate::frame::{BufferHandle, FrameBuilder, ImageHandle, PassBuilder};
 use crate::gpu::{DeviceKind, GpuError, vk};
 
 /// Specialization constant: tiles of a workgroup.
@@ -47,11 +49,22 @@ pub fn add(frame: &mut FrameBuilder) -> Result<ImageHandle, GpuError> {
 /// One sample per pixel, through the same point of the pixel as the g-buffer's.
 pub fn add_with_terms(frame: &mut FrameBuilder) -> Result<Terms, GpuError> {
     let terms = Terms::new(frame)?;
-    let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
-    let (per_group, groups) = (tiles_per_group(frame), groups_for(frame, frame.extent()));
-    let pass = frame.pass("megakernel", "paths/megakernel_terms").constant(TILES, per_group).groups(groups);
-    terms.written_by(pass.writes("ray_count", ray_count)).add()?;
+    terms.written_by(terms_pass(frame, "paths/megakernel_terms")?).add()?;
     Ok(terms)
+}
+
+/// As [`add_with_terms`], with the vertices of the path behind its filter vertex: 48 bytes for each, and 20 for each pixel. `known` declares where the
+/// kernel looks up whether a list may end.
+pub fn add_with_vertices(
+    frame: &mut FrameBuilder,
+    options: ListOptions,
+    known: impl for<'b, 'a> FnOnce(PassBuilder<'b, 'a>) -> PassBuilder<'b, 'a>,
+) -> Result<(Terms, PathVertices), GpuError> {
+    let terms = Terms::new(frame)?;
+    let vertices = PathVertices::new(frame, options)?;
+    let pass = terms.written_by(terms_pass(frame, "paths/megakernel_vertices")?);
+    known(vertices.written_by(pass)).add()?;
+    Ok((terms, vertices))
 }
 
 /// Paths that are traced in two frames: shaders_glsl/paths/retraced.glsl.
@@ -81,4 +94,10 @@ pub fn add_with_retraced(frame: &mut FrameBuilder, side: u32) -> Result<(Terms, 
     let pass = pass.writes("retraced_ray_count", retraced_ray_count).touching(4 * u64::from(paths));
     terms.written_by(pass.writes("kept", kept.current).writes("retraced", now)).add()?;
     Ok((terms, Retraced { paths, before: kept.previous, now }))
+}
+
+fn terms_pass<'b, 'a>(frame: &'b mut FrameBuilder<'a>, stem: &'static str) -> Result<PassBuilder<'b, 'a>, GpuError> {
+    let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
+    let (per_group, groups) = (tiles_per_group(frame), groups_for(frame, frame.extent()));
+    Ok(frame.pass("megakernel", stem).constant(TILES, per_group).groups(groups).writes("ray_count", ray_count))
 }

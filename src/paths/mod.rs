@@ -4,6 +4,7 @@ pub mod energy;
 pub mod gbuffer;
 mod megakernel;
 pub mod terms;
+pub mod vertices;
 mod wavefront;
 
 pub use megakernel::Retraced;
@@ -11,6 +12,8 @@ pub use wavefront::Options as WavefrontOptions;
 
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
+
+pub use megakernel::add_with_vertices;
 
 /// How paths are traced: `paths.kernel`. The picture is the same.
 #[derive(Debug, Clone, Copy)]

@@ -7,6 +7,7 @@ mod prepared;
 mod reference;
 mod hpsf;
 mod hpsf_plus;
+mod nhpsf;
 mod renderer;
 mod settings;
 mod sspsf;
@@ -79,8 +80,8 @@ impl PassOptions<'_> {
     }
 }
 
-pub static REGISTRY: [Technique; 5] =
-    [reference::TECHNIQUE, unfiltered::TECHNIQUE, sspsf::TECHNIQUE, hpsf::TECHNIQUE, hpsf_plus::TECHNIQUE];
+pub static REGISTRY: [Technique; 6] =
+    [reference::TECHNIQUE, unfiltered::TECHNIQUE, sspsf::TECHNIQUE, hpsf::TECHNIQUE, nhpsf::TECHNIQUE, hpsf_plus::TECHNIQUE];
 
 /// The technique of this name.
 pub fn find(name: &str) -> Option<&'static Technique> {

@@ -24,6 +24,7 @@ mod filter_hpsf_history;
 mod filter_hpsf_order;
 mod filter_hpsf_table;
 mod filter_hpsf_time;
+mod filter_nhpsf;
 mod gpu_kernel;
 mod metrics;
 mod results_log;

@@ -9,6 +9,7 @@ mod random;
 mod surface;
 
 mod bsdf_chi_square;
+mod bsdf_parts;
 mod furnace;
 mod intervals;
 mod lights;

@@ -26,14 +26,24 @@ struct FilterPoint {
     vec3 incident;
     /// Along the view, metres.
     float distance;
-    /// Cosine between the pixel's ray and the view.
-    float view_cosine;
+    /// Where it grows: its gradient over the position.
+    vec3 away;
+};
+
+/// A point with what its keys depend on.
+struct CellPoint {
+    FilterPoint point;
+    /// Of the jitter.
+    vec4 numbers;
+    /// Levels above the one of the point's distance.
+    int coarser;
 };
 
 /// Of one pixel, where its vertex is written.
 FilterPoint filter_point(uvec2 pixel, vec4 position, uint normal, uint incident) {
     float view_cosine = dot(primary_ray(pixel, frame.jitter).direction, frame.camera.forward);
-    return FilterPoint(position.xyz, unpack_normal(normal), unpack_normal(incident), position.w, view_cosine);
+    vec3 arrives = unpack_normal(incident);
+    return FilterPoint(position.xyz, unpack_normal(normal), arrives, position.w, arrives * view_cosine);
 }
 
 /// Numbers in [0, 1)^4 of a pixel's jitter `index` in this frame: for the position, and for the normal.
@@ -72,7 +82,7 @@ CellKey key_of(FilterPoint point, vec4 numbers, int coarser) {
     int level = level_at(point.distance, number) + coarser;
     vec2 shift = (2.0 * numbers.xy - 1.0) * (parameters.hpsf_jitter * power_of_two(level));
     vec3 offset = shift.x * basis.tangent + shift.y * basis.bitangent;
-    int level_there = level_at(point.distance + dot(offset, point.incident) * point.view_cosine, number) + coarser;
+    int level_there = level_at(point.distance + dot(offset, point.away), number) + coarser;
     vec2 tilt = (2.0 * numbers.zw - 1.0) * (parameters.hpsf_normal_jitter * exp2(-0.5 * float(parameters.hpsf_normal_bits)));
     vec3 normal = normalize(point.normal + tilt.x * basis.tangent + tilt.y * basis.bitangent);
     ivec3 cell = cell_of(point.position + offset, frame.origin_steps, frame.log2_origin_step, level_there);

@@ -50,7 +50,8 @@ void main() {
         return;
     }
     float view_cosine = dot(camera_ray(frame.previous_camera, pixel, frame.previous_jitter).direction, frame.previous_camera.forward);
-    FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), unpack_normal(path.incident), path.now.distance, view_cosine);
+    vec3 arrives = unpack_normal(path.incident);
+    FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), arrives, path.now.distance, arrives * view_cosine);
     float dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
     for (uint level = 0u; level < parameters.hpsf_levels + FURTHER_LEVELS; level++) {
         add_path(key_of(point, numbers, int(level)), path.now.radiance, before.radiance, dither);

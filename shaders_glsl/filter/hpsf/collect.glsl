@@ -1,4 +1,5 @@
-// Adds each pixel's radiance behind its filter vertex to a cell: Binder, section 3.2; Meijer, algorithm 4.
+// Adds radiance behind a filter vertex to a cell, each pixel's (pixel_sample.glsl) or that of a path's further vertices
+// (filter/nhpsf/vertex_sample.glsl): Binder, section 3.2; Meijer, algorithm 4.
 //
 // With hpsf.levels, the sample is added to as many ever coarser cells (Binder, 3.3.2). Whoever is the first of a frame at a cell that
 // nothing is known of also writes what it begins with, in `seeds`: with swapped tables its mean so far; else, and where it is new, that of
@@ -8,11 +9,17 @@
 #include "filter/hpsf/find.glsl"
 #include "lib/colour.glsl"
 
-layout(local_size_x = 8, local_size_y = 4) in;
+/// What goes into cells.
+struct CellSample {
+    CellPoint at;
+    vec3 radiance;
+    /// In [0, 1).
+    float dither;
+};
 
-layout(set = 1, binding = 2, rgba32f) readonly uniform image2D filter_position;
-layout(set = 1, binding = 3, r32ui) readonly uniform uimage2D filter_normal;
-layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D filter_incident;
+/// The invocation's sample; false where it has none. Defined by the kernel.
+bool find_sample(out CellSample one);
+
 layout(set = 1, binding = 5, scalar) buffer Keys { uint at[]; } keys;
 layout(set = 1, binding = 6, scalar) writeonly buffer Seeds { uvec4 at[]; } seeds;
 /// What earlier frames know: the last frame's table, or this one where it persists.
@@ -71,29 +78,19 @@ vec3 limited(vec3 radiance, CellKey key, uint slot) {
     return known.count >= parameters.hpsf_few && most > 0.0 && own > most ? radiance * (most / own) : radiance;
 }
 
-void collect_pixel() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
+void main() {
+    CellSample one;
+    if (!find_sample(one) || !all_finite(one.radiance)) {
         return;
     }
-    vec4 position = imageLoad(filter_position, pixel);
-    vec4 direct = imageLoad(diffuse_direct, pixel);
-    vec4 indirect = imageLoad(diffuse_indirect, pixel);
-    vec3 radiance = direct.rgb + indirect.rgb;
-    if (!(position.w > 0.0) || direct.w * indirect.w == 0.0 || !all_finite(radiance)) {
-        return;
-    }
-    FilterPoint point = filter_point(uvec2(pixel), position, imageLoad(filter_normal, pixel).x, imageLoad(filter_incident, pixel).x);
-    vec4 numbers = jitter_numbers(uvec2(pixel), 0u);
-    float dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
     for (uint level = 0u; level < parameters.hpsf_levels; level++) {
-        CellKey key = key_of(point, numbers, int(level));
+        CellKey key = key_of(one.at.point, one.at.numbers, one.at.coarser + int(level));
         uint slot = find_or_claim(key);
         if (slot == NO_SLOT) {
             continue;
         }
-        vec3 added = parameters.hpsf_limit > 0.0 ? limited(radiance, key, slot) : radiance;
-        bool first = add_sample(slot, clamp(added, vec3(0.0), vec3(parameters.hpsf_largest)), dither);
+        vec3 added = parameters.hpsf_limit > 0.0 ? limited(one.radiance, key, slot) : one.radiance;
+        bool first = add_sample(slot, clamp(added, vec3(0.0), vec3(parameters.hpsf_largest)), one.dither);
         if (first && HPSF_TIME != TIME_FRAME && is_unknown(slot)) {
             seeds.at[slot] = pack_cell(seed_of(key));
         }

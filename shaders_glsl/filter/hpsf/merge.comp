@@ -1,7 +1,9 @@
 // Per cell: this frame's sums become a mean, and that joins what earlier frames know (Binder, section 3.4.1).
 //
 // average: exponential moving average with weight hpsf.alpha for the past; adapts, and never converges. integrate: alpha =
-// N_old / (N_old + N_new), the mean over all samples, N_old up to hpsf.samples. hybrid: the same, where filter/hpsf/forget.comp has
+// N_old / (N_old + N_new), the mean over all samples, N_old up to hpsf.samples. hpsf.recency makes N_old count for less: with r of it the
+// weights of n frames grow as n^r (polynomial-decay averaging, Shamir and Zhang 2013), which forgets what the first ones knew
+// as n^-(1 + r) and keeps the variance within (1 + r)^2 / (1 + 2 r) of the mean's. hybrid: the same, where filter/hpsf/forget.comp has
 // lowered N_old. detect: the same, without a ray: N_old is lowered where this frame's mean is not by chance so far from the old one.
 // frame: this frame alone. The step towards the new mean
 // is what is added, so the count may stop at its limit without stalling the mean. Cells that no sample has touched for more than hpsf.age
@@ -46,7 +48,8 @@ float alpha_of(uint old_count, uint new_count) {
     if (HPSF_TIME == TIME_FRAME || old_count == 0u) {
         return 0.0;
     }
-    return HPSF_TIME == TIME_AVERAGE ? parameters.hpsf_alpha : float(old_count) / (float(old_count) + float(new_count));
+    float known = float(old_count) / (1.0 + parameters.hpsf_recency);
+    return HPSF_TIME == TIME_AVERAGE ? parameters.hpsf_alpha : known / (known + float(new_count));
 }
 
 /// The old mean, a step nearer the new one. After millions of samples a step is less than a float's last digit: rounded to nearest, the mean

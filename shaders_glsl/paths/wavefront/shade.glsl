@@ -43,7 +43,7 @@ bool shade(uint slot, inout Pending pending) {
     Path path = restored_path(rays.at[slot], weights.at[slot], footprints.at[slot], numbers);
     Hit hit = hits.at[slot];
     Terms terms = no_terms();
-    bool filters = path.filter_vertex == NO_VERTEX;
+    bool filters = is_in_front(path);
     if (!filters) {
         terms.attenuation = front.at[slot].attenuation;
     }
@@ -55,7 +55,7 @@ bool shade(uint slot, inout Pending pending) {
     }
     count_rays(pixel, uvec2(arrives, pending.ray.t_max > 0.0));
     add_to_sums(slot, terms);
-    if (filters && path.filter_vertex != NO_VERTEX) {
+    if (filters && !is_in_front(path)) {
         store_filter_vertex(slot, terms);
     }
     if (goes_on) {

@@ -34,7 +34,7 @@ Path restored_path(StoredRay ray, StoredWeights weights, StoredFootprint footpri
     path.eta_scale = weights.eta_scale;
     path.vertex = ray.marks & VERTEX_MASK;
     uint filter_vertex = (ray.marks >> VERTEX_BITS) & VERTEX_MASK;
-    path.filter_vertex = filter_vertex == VERTEX_MASK ? NO_VERTEX : filter_vertex;
+    path.filter_vertex = filter_vertex >= VERTEX_MASK - HPSF_VERTEX ? filter_vertex | ~VERTEX_MASK : filter_vertex;
     path.travelled = footprint.travelled;
     path.numbers = numbers;
     return path;

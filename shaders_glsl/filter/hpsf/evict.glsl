@@ -1,0 +1,32 @@
+// hpsf.eviction = priority: keys that have found no slot take those of cells that nobody has touched in this frame, of the lowest priority
+// first: Binder, section 3.4.3, and filter/hpsf/ordered.glsl. Only where the table is full does this pass do more than look.
+#include "filter/hpsf/cell.glsl"
+#include "filter/hpsf/find.glsl"
+
+layout(set = 1, binding = 3, scalar) buffer Keys { uint at[]; } keys;
+layout(set = 1, binding = 4, scalar) writeonly buffer Cells { uvec4 at[]; } cells;
+
+#include "filter/hpsf/propose.glsl"
+
+uint key_word(uint at) {
+    return keys.at[at];
+}
+
+/// The invocation's point; false where it has none. Defined by the kernel.
+bool find_point(out CellPoint at);
+
+void main() {
+    CellPoint at;
+    if (!find_point(at)) {
+        return;
+    }
+    for (uint level = 0u; level < parameters.hpsf_levels; level++) {
+        CellKey key = key_of(at.point, at.numbers, at.coarser + int(level));
+        if (find_slot(key) == NO_SLOT) {
+            uint evicted = evict_for(home_slot(key), words_of(key).x);
+            if (evicted != NO_SLOT) {
+                cells.at[evicted] = uvec4(0u);
+            }
+        }
+    }
+}

@@ -1,0 +1,17 @@
+// Each pixel's sample: what its filter vertex receives.
+#include "filter/hpsf/pixel_point.glsl"
+
+layout(set = 1, binding = 13, COLOR_FORMAT) readonly uniform image2D diffuse_direct;
+layout(set = 1, binding = 14, COLOR_FORMAT) readonly uniform image2D diffuse_indirect;
+
+bool find_sample(out CellSample one) {
+    if (!find_point(one.at)) {
+        return false;
+    }
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    vec4 direct = imageLoad(diffuse_direct, pixel);
+    vec4 indirect = imageLoad(diffuse_indirect, pixel);
+    one.radiance = direct.rgb + indirect.rgb;
+    one.dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
+    return direct.w * indirect.w != 0.0;
+}

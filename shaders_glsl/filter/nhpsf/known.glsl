@@ -1,0 +1,32 @@
+// What the last frame's cells know of a vertex.
+#ifndef FILTER_NHPSF_KNOWN_GLSL
+#define FILTER_NHPSF_KNOWN_GLSL
+
+#include "filter/nhpsf/vertex.glsl"
+#include "filter/hpsf/find.glsl"
+
+layout(set = 1, binding = 20, scalar) readonly buffer KnownKeys { uint at[]; } known_keys;
+layout(set = 1, binding = 21, scalar) readonly buffer KnownCells { uvec4 at[]; } known_cells;
+
+uint key_word(uint at) {
+    return known_keys.at[at];
+}
+
+Cell known_cell(CellKey key) {
+    uint slot = find_slot(key);
+    return slot == NO_SLOT ? EMPTY_CELL : unpack_cell(known_cells.at[slot]);
+}
+
+/// Of the finest level that has enough samples, or else of the one that has most.
+Cell known_at(FilterPoint point, vec4 numbers) {
+    Cell best = EMPTY_CELL;
+    for (uint level = 0u; level < parameters.hpsf_levels && best.count < max(parameters.hpsf_few, 1u); level++) {
+        Cell cell = known_cell(key_of(point, numbers, int(parameters.nhpsf_wider + level)));
+        if (cell.count > best.count) {
+            best = cell;
+        }
+    }
+    return best;
+}
+
+#endif

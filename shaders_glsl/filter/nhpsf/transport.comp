@@ -1,0 +1,77 @@
+// What the vertices of a path send to the ones before them, by what cells knew of them in the last frame: Meijer, section 4.3.
+//
+// The list (paths/vertices.glsl) is worked off from its end. With R_k what vertex k receives and C_k what its cell knows of that,
+//
+//   balanced   R_k = radiance_k + attenuation_(k+1) C_(k+1), or with R_(k+1) in place of it where nothing is known
+//   paper      R_k = radiance_k + attenuation_(k+1) (R_(k+1) + C_(k+1))
+//
+// and R_k then enters the cell of k. In operators, with D the direct light that a vertex receives and T the transport from what all
+// vertices receive to one of them, the balanced table goes to the solution of C = D + T C, the path tracer's sum D + T D + T^2 D + ...: a
+// frame adds one bounce to what is known. What counts as D enters R_k alone, and what a cell knows is sent alone, so nothing is there
+// twice. Where a list would end at a vertex that no cell knows, the path goes on as the path tracer's (nhpsf.unknown), so that the first
+// frame, and what comes into view, is no darker.
+//
+// Deviations and why: the thesis adds the cell's radiance to what the path itself has found behind the vertex. That light is in the cell, too:
+// C = D + T (D + C) has the solution C + T C, the right one and all indirect light once more, and with longer lists each vertex doubles what
+// those behind it send. It is what makes the thesis' pictures too bright and fills its shadows, which have no other light than this (5.3,
+// 6). There, the last vertex enters its cell with direct light alone; where that is also a cell of the picture's, it takes away some
+// of the surplus, and where it is not, the cell knows of no indirect light. Here what the ray from there hits is looked up, too, so
+// that every sample that enters a cell is complete.
+//
+// Measured on cornell, 32 frames, mean radiance over that of 32 bounces: cells of two vertices 1.00 as is; with the thesis' form 1.004 where
+// cells are apart (nhpsf.wider=3, hpsf.levels=1), which is D + 2 T D = 1.008 and not D + T D = 0.897, the light of its two vertices; 0.96
+// where they share cells. With 4, 8, 16 vertices 1.00 each; the thesis' form 1.33, 2.10, 3.02.
+#include "filter/nhpsf/known.glsl"
+#include "lib/colour.glsl"
+#include "lib/storage.glsl"
+
+layout(local_size_x = 8, local_size_y = 4) in;
+
+layout(set = 1, binding = 0, COLOR_FORMAT) uniform image2D diffuse_indirect;
+layout(set = 1, binding = 1, COLOR_FORMAT) uniform image2D specular_indirect;
+layout(set = 1, binding = 2, COLOR_FORMAT) readonly uniform image2D specular_attenuation;
+layout(set = 1, binding = 3, r32ui) readonly uniform uimage2D path_vertices;
+layout(set = 1, binding = 4, scalar) readonly buffer VertexPlaces { vec4 at[]; } vertex_places;
+layout(set = 1, binding = 5, scalar) readonly buffer VertexLinks { uvec4 at[]; } vertex_links;
+layout(set = 1, binding = 6, scalar) buffer VertexLight { uvec4 at[]; } vertex_light;
+
+const uint FORM_PAPER = 1u;
+
+/// `received`: by the path's own rays.
+vec3 sent_by(Cell known, vec3 received) {
+    if (NHPSF_FORM == FORM_PAPER) {
+        return received + known.mean;
+    }
+    return known.count > 0u ? known.mean : received;
+}
+
+void add_to(ivec2 pixel, vec3 diffuse, vec3 specular) {
+    vec4 before = imageLoad(diffuse_indirect, pixel);
+    bool finite = before.w > 0.0 && all_finite(diffuse);
+    imageStore(diffuse_indirect, pixel, storable(finite ? vec4(before.rgb + diffuse, 1.0) : vec4(0.0)));
+    if (all_finite(specular)) {
+        imageStore(specular_indirect, pixel, storable(imageLoad(specular_indirect, pixel) + vec4(specular, 0.0)));
+    }
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
+        return;
+    }
+    uint pixels = frame.extent.x * frame.extent.y;
+    uint place = uint(pixel.y) * frame.extent.x + uint(pixel.x);
+    vec3 arrives = vec3(0.0);
+    vec3 sent = vec3(0.0);
+    for (uint index = imageLoad(path_vertices, pixel).x; index-- > 0u;) {
+        uint at = index * pixels + place;
+        uvec4 link = vertex_links.at[at];
+        uvec4 light = vertex_light.at[at];
+        vec3 received = uintBitsToFloat(light.xyz) + arrives;
+        vertex_light.at[at] = uvec4(floatBitsToUint(received), light.w);
+        FilterPoint point = vertex_point(uvec2(pixel), vertex_places.at[at], link.w, light.w);
+        sent = sent_by(known_at(point, vertex_numbers(uvec2(pixel), index)), received);
+        arrives = uintBitsToFloat(link.xyz) * sent;
+    }
+    add_to(pixel, arrives, imageLoad(specular_attenuation, pixel).rgb * sent);
+}

@@ -1,0 +1,55 @@
+//! Filtering at every diffuse vertex of a path: shaders_glsl/filter/nhpsf/, Meijer, section 4.3. Two passes around those of
+//! [`super::hpsf`], whose table they share.
+//!
+//! transport: takes the lists of vertices and the last frame's table; adds what the vertices send to the one before them to the lists'
+//! radiance, and to the terms `diffuse_indirect` and `specular_indirect`. Reads 40 bytes a pixel and 48 a vertex, 20 for each level
+//! of a vertex, and writes 32 and 16. collect: takes the lists; adds each vertex's radiance to its cell, as hpsf's collect does.
+
+use super::hpsf::Table;
+use crate::frame::{FrameBuilder, PassBuilder};
+use crate::gpu::GpuError;
+use crate::paths::terms::Terms;
+use crate::paths::vertices::PathVertices;
+
+/// Specialization constant: vertices of a list that enter cells.
+const STORED_VERTICES: u32 = 206;
+
+pub(super) fn transport(frame: &mut FrameBuilder, table: &Table, terms: &Terms, vertices: &PathVertices) -> Result<(), GpuError> {
+    let keys = u64::from(frame.pixels()) * u64::from(vertices.options.most);
+    let pass = reads_places(frame.pass("nhpsf transport", "filter/nhpsf/transport"), vertices).updates("vertex_light", vertices.light);
+    let pass = pass.updates("diffuse_indirect", terms.diffuse_indirect).updates("specular_indirect", terms.specular_indirect);
+    table.looks_up(pass.reads("specular_attenuation", vertices.specular_attenuation), keys).add()
+}
+
+pub(super) fn collect(frame: &mut FrameBuilder, table: &Table, vertices: &PathVertices) -> Result<(), GpuError> {
+    let stem = table.stem("filter/nhpsf/collect_float", "filter/nhpsf/collect_fixed");
+    let (pass, samples) = sampled_vertices(frame, "nhpsf collect", stem, vertices);
+    table.insert(pass, samples)
+}
+
+pub(super) fn claim(frame: &mut FrameBuilder, table: &Table, vertices: &PathVertices) -> Result<(), GpuError> {
+    let (pass, samples) = sampled_vertices(frame, "nhpsf claim", "filter/nhpsf/claim_ordered", vertices);
+    table.claim(pass, samples)
+}
+
+pub(super) fn evict(frame: &mut FrameBuilder, table: &Table, vertices: &PathVertices) -> Result<(), GpuError> {
+    let (pass, samples) = sampled_vertices(frame, "nhpsf evict", "filter/nhpsf/evict", vertices);
+    table.evict(pass, samples)
+}
+
+/// A pass over all vertices that enter cells, and their number.
+fn sampled_vertices<'b, 'a>(
+    frame: &'b mut FrameBuilder<'a>,
+    name: &'static str,
+    stem: &'static str,
+    vertices: &PathVertices,
+) -> (PassBuilder<'b, 'a>, u32) {
+    let samples = frame.pixels() * vertices.options.sampled();
+    let pass = reads_places(frame.pass(name, stem), vertices).elements(samples);
+    (pass.constant(STORED_VERTICES, vertices.options.sampled()).reads("vertex_light", vertices.light), samples)
+}
+
+fn reads_places<'b, 'a>(pass: PassBuilder<'b, 'a>, vertices: &PathVertices) -> PassBuilder<'b, 'a> {
+    let pass = pass.reads("path_vertices", vertices.count);
+    pass.reads("vertex_places", vertices.places).reads("vertex_links", vertices.links)
+}

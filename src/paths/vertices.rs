@@ -1,0 +1,59 @@
+//! The filter vertices of paths behind their first one: shaders_glsl/paths/vertices.glsl.
+
+use crate::frame::{BufferHandle, FrameBuilder, ImageHandle, PassBuilder};
+use crate::gpu::{GpuError, vk};
+
+/// How long lists become, and how they end.
+#[derive(Debug, Clone, Copy)]
+pub struct ListOptions {
+    /// Vertices of a list at most; the path ends there, or with the ray from there, which can find a light and nothing else.
+    pub most: u32,
+    /// It ends there: the last vertex is there to be looked up, no light is looked for at it, and it has no sample.
+    pub last_is_read: bool,
+}
+
+impl ListOptions {
+    /// Vertices of a list that have samples: the first ones.
+    pub fn sampled(&self) -> u32 {
+        self.most - u32::from(self.last_is_read)
+    }
+}
+
+/// A list of vertices for each pixel's path; 48 bytes a vertex.
+#[derive(Debug, Clone, Copy)]
+pub struct PathVertices {
+    pub options: ListOptions,
+    /// Length of the pixel's list.
+    pub count: ImageHandle,
+    /// What becomes of the first one's radiance on the way to `specular_indirect`.
+    pub specular_attenuation: ImageHandle,
+    pub places: BufferHandle,
+    pub links: BufferHandle,
+    pub light: BufferHandle,
+}
+
+/// Specialization constants.
+const MOST_VERTICES: u32 = 204;
+const LAST_IS_READ: u32 = 205;
+
+impl PathVertices {
+    /// # Errors
+    /// More bytes than a kernel of this device can see of one buffer.
+    pub(super) fn new(frame: &mut FrameBuilder, options: ListOptions) -> Result<Self, GpuError> {
+        let bytes = 16 * u64::from(frame.pixels()) * u64::from(options.most);
+        Ok(Self {
+            options,
+            count: frame.image("path_vertices", vk::Format::R32_UINT)?,
+            specular_attenuation: frame.color_image("specular_attenuation")?,
+            places: frame.buffer("places of path vertices", bytes)?,
+            links: frame.buffer("links of path vertices", bytes)?,
+            light: frame.buffer("light of path vertices", bytes)?,
+        })
+    }
+
+    pub(super) fn written_by<'b, 'a>(&self, pass: PassBuilder<'b, 'a>) -> PassBuilder<'b, 'a> {
+        let pass = pass.constant(MOST_VERTICES, self.options.most).constant(LAST_IS_READ, self.options.last_is_read.into());
+        let pass = pass.writes("path_vertices", self.count).writes("specular_attenuation", self.specular_attenuation);
+        pass.writes("vertex_places", self.places).writes("vertex_links", self.links).writes("vertex_light", self.light)
+    }
+}
