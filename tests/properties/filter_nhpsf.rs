@@ -163,7 +163,6 @@ fn closed_scenes_are_as_bright_as_the_path_tracer_finds_them() {
         set(&mut settings, &[("paths.max_bounces", "32")]);
         let (truth, of_truth) = mean_of_runs(&scene, &settings, "unfiltered", 128);
         let error = (of_truth + of_found).sqrt() / truth;
-        println!("{name}: {} +- {error}", found / truth);
         assert!((found / truth - 1.0).abs() < 0.01 + 4.0 * error, "{name}: {} +- {error}", found / truth);
     }
 }
@@ -180,4 +179,35 @@ fn light_is_as_bright_where_a_later_vertex_is_filtered() {
         assert!(relative_error(&output(&renderer, "before"), |c| series(c, in_front + 1)) < 1e-4, "{vertex}");
         assert!(relative_error(&renderer.picture().unwrap(), received) < 1e-4, "{vertex}");
     }
+}
+
+/// Mean of the indirect light of so many frames, each pixel's red: pictures of all bounces, less those without any by the same numbers.
+fn indirect_light(settings: &Settings, technique: &str, seed: u32, frames: u32) -> Vec<f64> {
+    let scene = builtin("cornell");
+    let mut sum = vec![0.0; (settings.extent[0] * settings.extent[1]) as usize];
+    for (bounces, sign) in [("8", 1.0), ("0", -1.0)] {
+        let mut settings = settings.clone();
+        set(&mut settings, &[("paths.max_bounces", bounces), ("paths.roulette", "off")]);
+        let mut renderer = render_frames(&common::gpu(), &scene, &Settings { seed, ..settings }, technique, 0);
+        for _ in 0..frames {
+            renderer.render_frame().unwrap();
+            let picture = renderer.picture().unwrap();
+            sum.iter_mut().zip(&picture.pixels).for_each(|(sum, pixel)| *sum += sign * f64::from(pixel[0]) / f64::from(frames));
+        }
+    }
+    sum
+}
+
+/// Binder, figure 10: 16 paths per pixel, filtered at their second diffuse vertex alone, have less of an error in their indirect light than
+/// without a filter.
+#[test]
+fn filtering_at_the_second_vertex_takes_away_variance_of_indirect_light() {
+    let mut settings = settings(48, 32);
+    set(&mut settings, &[("hpsf.width", "4"), ("hpsf.normal_bits", "6")]);
+    let truth = indirect_light(&settings, "unfiltered", 1, 400);
+    let error = |found: Vec<f64>| found.iter().zip(&truth).map(|(f, t)| (f - t).powi(2)).sum::<f64>();
+    let plain = error(indirect_light(&settings, "unfiltered", 2, 16));
+    set(&mut settings, &[("hpsf.vertex", "second")]);
+    let second = error(indirect_light(&settings, "hpsf", 2, 16));
+    assert!(plain > 1.4 * second, "{plain} without, {second} with");
 }

@@ -21,6 +21,10 @@
 // Measured on cornell, 32 frames, mean radiance over that of 32 bounces: cells of two vertices 1.00 as is; with the thesis' form 1.004 where
 // cells are apart (nhpsf.wider=3, hpsf.levels=1), which is D + 2 T D = 1.008 and not D + T D = 0.897, the light of its two vertices; 0.96
 // where they share cells. With 4, 8, 16 vertices 1.00 each; the thesis' form 1.33, 2.10, 3.02.
+// Depth is that of the frames, not that of the lists (Meijer, figure 16, which is of paths continued over frames): where a list ends in the
+// dark and not in a path (nhpsf.unknown), 32 frames with 2, 4, 8, 16 vertices reach 0.981, 0.988, 0.995, 0.998. relMSE does not depend
+// on it (0.0011 each), and is about that of hpsf (256x144: 0.0013, 0.0012; the hall at 128x72 after 16 frames: 0.037, 0.043), with 2.5
+// rays per pixel for 3.4.
 #include "filter/nhpsf/known.glsl"
 #include "lib/colour.glsl"
 #include "lib/storage.glsl"
