@@ -60,6 +60,11 @@ bool find_pixel(Field field, uint thread, inout uint turn, out uvec2 pixel) {
 /// Takes a pixel's result, a sum over `samples`; `counts`: its scattered rays and shadow rays. Defined by the kernel.
 void write_pixel(uvec2 pixel, Terms terms, uint samples, uvec2 counts);
 
+#ifdef KEEP_ENDS
+/// Takes a pixel's path where it has ended: at `hit`, if it has ended at a surface. Defined by the kernel.
+void keep_end(uvec2 pixel, Path path, Hit hit, Terms terms);
+#endif
+
 /// The paths of all pixels of a thread, one after the other.
 void trace_pixels(uint group, uint thread) {
     Field field = field_of(group);
@@ -106,6 +111,9 @@ void trace_pixels(uint group, uint thread) {
             sampled++;
             terms.attenuation = sampled < samples ? vec3(0.0) : terms.attenuation;
             if (sampled == samples) {
+#ifdef KEEP_ENDS
+                keep_end(pixel, path, hit, terms);
+#endif
                 write_pixel(pixel, terms, samples, counts);
                 terms = no_terms();
                 counts = uvec2(0u);

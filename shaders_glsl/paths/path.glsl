@@ -334,6 +334,11 @@ bool follow(inout Path path, bool found, Hit hit, inout Terms terms) {
 bool visit(inout Path path, Hit hit, bool arrives, inout uint shadow_rays, inout Terms terms, inout Pending pending) {
     vec3 wo = -path.ray.direction;
     HitPoint point = hit_point(hit, path.ray.direction, path.cone);
+#ifdef VERTEX_LIST
+    if (!arrives && path.filter_vertex == path.vertex && vertices_behind(terms) > 0u) {
+        point.surface.part = PART_DIFFUSE;
+    }
+#endif
     if (arrives && !arrive(path, hit, point, terms)) {
         return false;
     }

@@ -102,6 +102,10 @@ layout(constant_id = 152) const uint NHPSF_DISTANCE = 0;
 /// Where no cell knows the vertex that a path would end at: it goes on as without a filter, or nothing comes from there, so that depth grows with frames alone. Trace costs whole paths in the first frame, and where the camera shows what is new.
 layout(constant_id = 153) const uint NHPSF_UNKNOWN = 0;
 
+//@ anhpsf.transport last last|all
+/// Between which cells of a continued path light travels in a frame: from its newest vertex to the one before, or from each to the one before (Meijer, section 7). All: light from deep comes sooner; 64 bytes and as many lookups for each bounce of paths.max_bounces. Where things move: the last.
+layout(constant_id = 154) const uint ANHPSF_TRANSPORT = 0;
+
 struct Parameters {
     //@ paths.max_bounces 8 0..64 bounces
     /// Scattering events after the primary hit; 0 is direct light and emission only. Each adds a scatter and a shadow ray.

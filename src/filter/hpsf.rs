@@ -62,6 +62,8 @@ pub struct Paths {
     pub terms: Terms,
     /// Vertices behind the first one, which send it what the last frame's cells know of them, and are filtered in the same cells.
     pub behind: Option<PathVertices>,
+    /// And those of paths that are continued over frames.
+    pub chains: Option<PathVertices>,
     /// Paths of the last frame that were traced again: cells forget where they tell of a change.
     pub retraced: Option<Retraced>,
 }
@@ -127,12 +129,12 @@ impl Table {
         if self.options.swapped {
             frame.fill("hpsf clear", self.keys.current, 0);
         }
-        let behind = paths.behind.as_ref().filter(|vertices| vertices.options.sampled() > 0);
+        let behind = || [&paths.behind, &paths.chains].into_iter().flatten().filter(|vertices| vertices.options.sampled() > 0);
         if self.options.ordered || self.options.evicts {
             self.give_slots(frame, terms, behind)?;
         }
         self.collect(frame, terms)?;
-        if let Some(vertices) = behind {
+        for vertices in behind() {
             nhpsf::collect(frame, self, vertices)?;
         }
         if let Some(retraced) = paths.retraced {
@@ -145,15 +147,18 @@ impl Table {
         self.resolve(frame, terms)
     }
 
-    fn give_slots(&self, frame: &mut FrameBuilder, terms: &Terms, behind: Option<&PathVertices>) -> Result<(), GpuError> {
+    fn give_slots<'v, V>(&self, frame: &mut FrameBuilder, terms: &Terms, behind: impl Fn() -> V) -> Result<(), GpuError>
+    where
+        V: Iterator<Item = &'v PathVertices>,
+    {
         let samples = frame.pixels();
         self.claim(reads_vertices(frame.pass("hpsf claim", "filter/hpsf/claim_ordered"), terms), samples)?;
-        if let Some(vertices) = behind {
+        for vertices in behind() {
             nhpsf::claim(frame, self, vertices)?;
         }
         if self.options.evicts {
             self.evict(reads_vertices(frame.pass("hpsf evict", "filter/hpsf/evict"), terms), samples)?;
-            if let Some(vertices) = behind {
+            for vertices in behind() {
                 nhpsf::evict(frame, self, vertices)?;
             }
         }

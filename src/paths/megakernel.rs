@@ -6,7 +6,8 @@
 //! pixel, or 124 with terms (12 and 76 at fp16), 24 of them for the filter vertex; traces up to 2 (bounces + 1) + 1 rays per sample.
 
 use super::terms::Terms;
-use super::vertices::{ListOptions, PathVertices};
+use super::tiles;
+use super::vertices::{ListOptions, PathEnds, PathVertices};
 use crate::frame::{BufferHandle, FrameBuilder, ImageHandle, PassBuilder};
 use crate::gpu::{DeviceKind, GpuError, vk};
 
@@ -19,16 +20,15 @@ const RETRACING_GROUP: u32 = 203;
 const KEPT: u64 = 16;
 const RETRACED: u64 = 36;
 
+/// Bytes (shaders_glsl/paths/end.glsl).
+const END: u64 = 48;
+
 /// Tiles of 8x4 pixels that a workgroup works off, one pixel per thread and tile. More of them keep more threads busy while long paths
 /// go on; fewer keep more workgroups for wide devices.
 fn tiles_per_group(frame: &FrameBuilder) -> u32 {
     let most = if frame.gpu().capabilities().kind == DeviceKind::Software { 16 } else { 4 };
     // Enough workgroups for small pictures, too.
     (tiles(frame.extent()) / 64).clamp(1, most)
-}
-
-fn tiles([width, height]: [u32; 2]) -> u32 {
-    width.div_ceil(8) * height.div_ceil(4)
 }
 
 /// Workgroups for a field of so many pixels.
@@ -49,7 +49,8 @@ pub fn add(frame: &mut FrameBuilder) -> Result<ImageHandle, GpuError> {
 /// One sample per pixel, through the same point of the pixel as the g-buffer's.
 pub fn add_with_terms(frame: &mut FrameBuilder) -> Result<Terms, GpuError> {
     let terms = Terms::new(frame)?;
-    terms.written_by(terms_pass(frame, "paths/megakernel_terms")?).add()?;
+    let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
+    terms.written_by(terms_pass(frame, "paths/megakernel_terms", ray_count)).add()?;
     Ok(terms)
 }
 
@@ -62,7 +63,8 @@ pub fn add_with_vertices(
 ) -> Result<(Terms, PathVertices), GpuError> {
     let terms = Terms::new(frame)?;
     let vertices = PathVertices::new(frame, options)?;
-    let pass = terms.written_by(terms_pass(frame, "paths/megakernel_vertices")?);
+    let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
+    let pass = terms.written_by(terms_pass(frame, "paths/megakernel_vertices", ray_count));
     known(vertices.written_by(pass)).add()?;
     Ok((terms, vertices))
 }
@@ -96,8 +98,23 @@ pub fn add_with_retraced(frame: &mut FrameBuilder, side: u32) -> Result<(Terms, 
     Ok((terms, Retraced { paths, before: kept.previous, now }))
 }
 
-fn terms_pass<'b, 'a>(frame: &'b mut FrameBuilder<'a>, stem: &'static str) -> Result<PassBuilder<'b, 'a>, GpuError> {
-    let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
+/// The same as [`add_with_vertices`], and where paths can be continued: 48 bytes a pixel (shaders_glsl/paths/end.glsl), where a list's last
+/// vertex is there to be looked up.
+pub fn add_with_ends(
+    frame: &mut FrameBuilder,
+    options: ListOptions,
+    known: impl for<'b, 'a> FnOnce(PassBuilder<'b, 'a>) -> PassBuilder<'b, 'a>,
+) -> Result<(Terms, PathVertices, PathEnds), GpuError> {
+    let terms = Terms::new(frame)?;
+    let vertices = PathVertices::new(frame, options)?;
+    let places = frame.buffer("ends of paths", END * u64::from(frame.pixels()))?;
+    let ends = PathEnds { places, ray_count: frame.image("ray_count", vk::Format::R32_UINT)? };
+    let pass = terms.written_by(terms_pass(frame, "paths/megakernel_ends", ends.ray_count)).writes("ends", ends.places);
+    known(vertices.written_by(pass)).add()?;
+    Ok((terms, vertices, ends))
+}
+
+fn terms_pass<'b, 'a>(frame: &'b mut FrameBuilder<'a>, stem: &'static str, ray_count: ImageHandle) -> PassBuilder<'b, 'a> {
     let (per_group, groups) = (tiles_per_group(frame), groups_for(frame, frame.extent()));
-    Ok(frame.pass("megakernel", stem).constant(TILES, per_group).groups(groups).writes("ray_count", ray_count))
+    frame.pass("megakernel", stem).constant(TILES, per_group).groups(groups).writes("ray_count", ray_count)
 }

@@ -13,7 +13,7 @@ pub use wavefront::Options as WavefrontOptions;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
 
-pub use megakernel::add_with_vertices;
+pub use megakernel::{add_with_ends, add_with_vertices};
 
 /// How paths are traced: `paths.kernel`. The picture is the same.
 #[derive(Debug, Clone, Copy)]
@@ -46,4 +46,9 @@ impl Kernel {
         }
         megakernel::add_with_retraced(frame, side)
     }
+}
+
+/// Tiles of 8x4 pixels that the picture has, threads of a workgroup each.
+pub fn tiles([width, height]: [u32; 2]) -> u32 {
+    width.div_ceil(8) * height.div_ceil(4)
 }

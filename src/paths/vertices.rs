@@ -32,6 +32,15 @@ pub struct PathVertices {
     pub light: BufferHandle,
 }
 
+/// Where paths can be continued: at the last vertex of a list, which is only looked up.
+#[derive(Debug, Clone, Copy)]
+pub struct PathEnds {
+    /// One for each pixel, 48 bytes (shaders_glsl/paths/end.glsl).
+    pub places: BufferHandle,
+    /// Rays so far, to be counted on.
+    pub ray_count: ImageHandle,
+}
+
 /// Specialization constants.
 const MOST_VERTICES: u32 = 204;
 const LAST_IS_READ: u32 = 205;

@@ -15,6 +15,7 @@
 //! which no path ends early.
 
 use super::terms::Terms;
+use super::tiles;
 use crate::frame::{BufferHandle, FrameBuilder, ImageHandle, MOST_GROUPS};
 use crate::gpu::{GpuError, vk};
 
@@ -103,8 +104,7 @@ struct TermsApart {
 
 impl Wavefront {
     fn new(frame: &mut FrameBuilder, terms_apart: bool) -> Result<Self, GpuError> {
-        let [width, height] = frame.extent();
-        let slots = width.div_ceil(8) * height.div_ceil(4) * 32;
+        let slots = 32 * tiles(frame.extent());
         check_device(frame, slots)?;
         let mut buffer = |name: &str, bytes: u64| frame.buffer(&format!("wavefront {name}"), u64::from(slots) * bytes);
         let apart = terms_apart.then(|| {

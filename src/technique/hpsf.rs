@@ -49,10 +49,10 @@ pub(super) fn passes_of(
 /// Paths; some of the last frame's, too, where cells want to know of changes.
 fn add_paths(frame: &mut FrameBuilder, options: PassOptions) -> Result<Paths, GpuError> {
     if options.parameters.number("hpsf.time") != HYBRID {
-        return Ok(Paths { terms: options.kernel().add_with_terms(frame)?, behind: None, retraced: None });
+        return Ok(Paths { terms: options.kernel().add_with_terms(frame)?, behind: None, chains: None, retraced: None });
     }
     let (terms, retraced) = options.kernel().add_with_retraced(frame, options.parameters.number("hpsf.retrace") as u32)?;
-    Ok(Paths { terms, behind: None, retraced: Some(retraced) })
+    Ok(Paths { terms, behind: None, chains: None, retraced: Some(retraced) })
 }
 
 fn table_options(options: PassOptions) -> Options {

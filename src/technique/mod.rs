@@ -3,6 +3,7 @@
 
 pub mod parameters;
 mod governor;
+mod anhpsf;
 mod prepared;
 mod reference;
 mod hpsf;
@@ -80,8 +81,15 @@ impl PassOptions<'_> {
     }
 }
 
-pub static REGISTRY: [Technique; 6] =
-    [reference::TECHNIQUE, unfiltered::TECHNIQUE, sspsf::TECHNIQUE, hpsf::TECHNIQUE, nhpsf::TECHNIQUE, hpsf_plus::TECHNIQUE];
+pub static REGISTRY: [Technique; 7] = [
+    reference::TECHNIQUE,
+    unfiltered::TECHNIQUE,
+    sspsf::TECHNIQUE,
+    hpsf::TECHNIQUE,
+    nhpsf::TECHNIQUE,
+    anhpsf::TECHNIQUE,
+    hpsf_plus::TECHNIQUE,
+];
 
 /// The technique of this name.
 pub fn find(name: &str) -> Option<&'static Technique> {

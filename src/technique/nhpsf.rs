@@ -20,7 +20,7 @@ fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle,
     let keys = u64::from(frame.pixels());
     hpsf::passes_of(frame, options, 1 + list.sampled(), |frame, table| {
         let (terms, vertices) = paths::add_with_vertices(frame, list, |pass| table.looks_up(pass, keys))?;
-        Ok(Paths { terms, behind: Some(vertices), retraced: None })
+        Ok(Paths { terms, behind: Some(vertices), chains: None, retraced: None })
     })
 }
 

@@ -8,12 +8,12 @@ use pathspace::display::Image;
 use pathspace::scene::{CameraView, Instance, Material, Mesh, Scene};
 use pathspace::technique::{Settings, ViewChoice};
 
-const EMITTED: [f32; 3] = [1.0, 0.5, 2.0];
+pub const EMITTED: [f32; 3] = [1.0, 0.5, 2.0];
 const ALBEDO: [f32; 3] = [0.5, 0.2, 0.7];
 
 /// A cube of 2 m around the camera whose walls all emit the same: what arrives anywhere from anywhere is e / (1 - albedo), and no sample of it
 /// differs from another where nothing but emission is looked for.
-fn closed_box(wall: impl Fn(&mut Material, usize)) -> (Scene, Settings) {
+pub fn closed_box(wall: impl Fn(&mut Material, usize)) -> (Scene, Settings) {
     let mut scene = Scene { nodes: vec![node(DVec3::ZERO)], ..Default::default() };
     for side in 0..6 {
         let mut material = Material { metallic: 0.0, specular: 0.0, double_sided: true, ..Default::default() };
@@ -49,7 +49,7 @@ fn filtered(scene: &Scene, settings: &Settings, values: &[(&str, &str)], frames:
 }
 
 /// e times the sum of so many powers of the albedo.
-fn series(channel: usize, bounces: u32) -> f32 {
+pub fn series(channel: usize, bounces: u32) -> f32 {
     EMITTED[channel] * (0..bounces).map(|i| ALBEDO[channel].powi(i as i32)).sum::<f32>()
 }
 
@@ -57,13 +57,13 @@ fn series(channel: usize, bounces: u32) -> f32 {
 const FEW: f32 = 2e-3;
 
 /// Mean over pixels and channels.
-fn relative_error(image: &Image, expected: impl Fn(usize) -> f32) -> f32 {
+pub fn relative_error(image: &Image, expected: impl Fn(usize) -> f32) -> f32 {
     let error = |value: f32, c: usize| (value / expected(c) - 1.0).abs();
     image.pixels.iter().flat_map(|pixel| (0..3).map(|c| error(pixel[c], c))).sum::<f32>() / (3 * image.pixels.len()) as f32
 }
 
 /// What walls receive, at any depth.
-fn received(channel: usize) -> f32 {
+pub fn received(channel: usize) -> f32 {
     EMITTED[channel] / (1.0 - ALBEDO[channel])
 }
 
@@ -133,7 +133,7 @@ fn the_thesis_form_counts_the_second_vertex_twice() {
 }
 
 /// The mean of the last half of the frames of some runs, and the variance of that mean.
-fn mean_of_runs(scene: &Scene, settings: &Settings, technique: &str, frames: u32) -> (f64, f64) {
+pub fn mean_of_runs(scene: &Scene, settings: &Settings, technique: &str, frames: u32) -> (f64, f64) {
     const RUNS: u32 = 6;
     let mut renderer = render_frames(&common::gpu(), scene, settings, technique, 0);
     let mut run = |seed| {

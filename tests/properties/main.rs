@@ -17,6 +17,7 @@ mod assets;
 mod bench_compare;
 mod builtin;
 mod effects;
+mod filter_anhpsf;
 mod filter_energy;
 mod filter_hash_key;
 mod filter_hpsf;

@@ -29,4 +29,14 @@ Cell known_at(FilterPoint point, vec4 numbers) {
     return best;
 }
 
+const uint FORM_PAPER = 1u;
+
+/// What a vertex sends on (filter/nhpsf/transport.comp). `received`: by the path's own rays.
+vec3 sent_by(Cell known, vec3 received) {
+    if (NHPSF_FORM == FORM_PAPER) {
+        return received + known.mean;
+    }
+    return known.count > 0u ? known.mean : received;
+}
+
 #endif

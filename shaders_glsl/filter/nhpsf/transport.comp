@@ -39,16 +39,6 @@ layout(set = 1, binding = 4, scalar) readonly buffer VertexPlaces { vec4 at[]; }
 layout(set = 1, binding = 5, scalar) readonly buffer VertexLinks { uvec4 at[]; } vertex_links;
 layout(set = 1, binding = 6, scalar) buffer VertexLight { uvec4 at[]; } vertex_light;
 
-const uint FORM_PAPER = 1u;
-
-/// `received`: by the path's own rays.
-vec3 sent_by(Cell known, vec3 received) {
-    if (NHPSF_FORM == FORM_PAPER) {
-        return received + known.mean;
-    }
-    return known.count > 0u ? known.mean : received;
-}
-
 void add_to(ivec2 pixel, vec3 diffuse, vec3 specular) {
     vec4 before = imageLoad(diffuse_indirect, pixel);
     bool finite = before.w > 0.0 && all_finite(diffuse);

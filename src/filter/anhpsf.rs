@@ -1,0 +1,64 @@
+//! Paths that are continued from frame to frame, filtered at every diffuse vertex: shaders_glsl/filter/anhpsf/, Meijer, section 4.4. Two passes
+//! beside those of [`super::nhpsf`], whose functions and table they share.
+//!
+//! continue: takes the ends of this frame's paths and their lists; one scattered ray and one shadow ray for the path that each pixel
+//! continues. transport: takes the chains that come of it and the last frame's table; returns the chains' samples as a list, which
+//! enters cells as nhpsf's does. History: the paths, 108 bytes a pixel, and 48 for each vertex of a chain: two, or all of a path. Reads and writes
+//! as much, 48 more of ends, 20 for each lookup, and 16 for each sample.
+
+use super::hpsf::Table;
+use crate::frame::FrameBuilder;
+use crate::gpu::{GpuError, vk};
+use crate::paths::tiles;
+use crate::paths::vertices::{ListOptions, PathEnds, PathVertices};
+
+/// Specialization constants: last vertex of this frame's lists, and how chains end (paths/vertices.glsl).
+const LIST_END: u32 = 207;
+const MOST_VERTICES: u32 = 204;
+const LAST_IS_READ: u32 = 205;
+
+/// Bytes (paths/wavefront/records.glsl, chain.glsl).
+const RAY: u64 = 32;
+const WEIGHTS: u64 = 32;
+const FOOTPRINT: u64 = 16;
+const CONTINUED: u64 = 28;
+const VERTEX_PART: u64 = 16;
+
+/// Two, or as many as a path can have behind its first filter vertex, the one that is only looked up included.
+pub fn chain_length(whole: bool, max_bounces: u32) -> u32 {
+    if whole { (max_bounces + 1).max(2) } else { 2 }
+}
+
+/// `lists`: of this frame's paths, which can be continued at `ends`.
+pub fn add(frame: &mut FrameBuilder, table: &Table, lists: &PathVertices, ends: PathEnds, length: u32) -> Result<PathVertices, GpuError> {
+    let pixels = u64::from(frame.pixels());
+    let part = VERTEX_PART * pixels * u64::from(length);
+    let light = frame.kept_buffer("light of chains", part)?;
+    let chains = PathVertices {
+        options: ListOptions { most: length, last_is_read: false },
+        count: frame.image("chain_samples", vk::Format::R32_UINT)?,
+        places: frame.kept_buffer("places of chains", part)?,
+        links: frame.kept_buffer("links of chains", part)?,
+        light: frame.buffer("samples of chains", part)?,
+        ..*lists
+    };
+    let vertices = frame.image("chain_vertices", vk::Format::R32_UINT)?;
+    let state = [("continued", CONTINUED), ("rays", RAY), ("weights", WEIGHTS), ("footprints", FOOTPRINT)];
+    let state = state.map(|(name, bytes)| frame.kept_buffer(&format!("{name} of chains"), bytes * pixels).map(|buffer| (name, buffer)));
+    let groups = tiles(frame.extent());
+    let pass = frame.pass("anhpsf continue", "filter/anhpsf/continue").groups(groups).updates("ray_count", ends.ray_count);
+    let pass = pass.constant(LIST_END, lists.options.most - 1).constant(MOST_VERTICES, u32::MAX).constant(LAST_IS_READ, 0);
+    let last = VERTEX_PART * pixels;
+    let pass = pass.reads("ends", ends.places).reads("list_places", lists.places).touching(last);
+    let pass = pass.reads("list_links", lists.links).touching(last).reads("list_light", lists.light).touching(last);
+    let pass = state.into_iter().try_fold(pass, |pass, state| state.map(|(name, buffer)| pass.updates(name, buffer)))?;
+    let pass = pass.updates("chain_places", chains.places).touching(2 * last).updates("chain_links", chains.links).touching(2 * last);
+    let pass = pass.updates("chain_light", light).touching(2 * last);
+    pass.writes("chain_vertices", vertices).writes("chain_samples", chains.count).add()?;
+
+    let pass = frame.pass("anhpsf transport", "filter/anhpsf/transport").reads("chain_vertices", vertices);
+    let pass = pass.updates("chain_samples", chains.count).reads("chain_places", chains.places).reads("chain_links", chains.links);
+    let pass = pass.reads("chain_light", light).writes("sample_light", chains.light);
+    table.looks_up(pass, pixels * u64::from(length)).add()?;
+    Ok(chains)
+}

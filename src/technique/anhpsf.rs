@@ -1,0 +1,31 @@
+//! `anhpsf`: nhpsf along paths that grow by a bounce with every frame.
+
+use super::{PassOptions, Technique, hpsf};
+use crate::filter::anhpsf;
+use crate::filter::hpsf::Paths;
+use crate::frame::{FrameBuilder, ImageHandle};
+use crate::gpu::GpuError;
+use crate::paths;
+use crate::paths::vertices::ListOptions;
+
+pub(super) const TECHNIQUE: Technique = Technique {
+    name: "anhpsf",
+    help: "nhpsf along paths that are continued from frame to frame, by one scattered ray and one shadow ray of each pixel",
+    // Deep vertices come back to a cell by chance: it must outlast the frames between.
+    defaults: &[("hpsf.recency", "1"), ("hpsf.normal_bits", "6"), ("hpsf.age", "64"), ("nhpsf.vertices", "1"), ("paths.max_bounces", "16")],
+    passes,
+    ..hpsf::TECHNIQUE
+};
+
+fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
+    let number = |key| options.parameters.number(key) as u32;
+    // Paths are continued from vertices that they have only looked up, in the thesis' form, too.
+    let list = ListOptions { most: number("nhpsf.vertices").min(number("paths.max_bounces")).max(1), last_is_read: true };
+    let keys = u64::from(frame.pixels());
+    let length = anhpsf::chain_length(number("anhpsf.transport") == 1, number("paths.max_bounces"));
+    hpsf::passes_of(frame, options, 1 + list.sampled() + length, |frame, table| {
+        let (terms, vertices, ends) = paths::add_with_ends(frame, list, |pass| table.looks_up(pass, keys))?;
+        let chains = anhpsf::add(frame, table, &vertices, ends, length)?;
+        Ok(Paths { terms, behind: Some(vertices), chains: Some(chains), retraced: None })
+    })
+}
