@@ -148,7 +148,9 @@ fn a_full_table_leaves_pixels_unfiltered_and_darkens_nothing() {
 fn a_restart_forgets_every_frame_before_it() {
     let gpu = common::gpu();
     let scene = builtin("cornell");
-    for (technique, table) in [("hpsf", "persistent"), ("hpsf", "swapped"), ("hpsf+", "persistent")] {
+    for (technique, table) in
+        [("hpsf", "persistent"), ("hpsf", "swapped"), ("hpsf+", "persistent"), ("nhpsf", "persistent"), ("nhpsf", "swapped")]
+    {
         let settings = with(&[("hpsf.table", table), ("hpsf.cells", "4")]);
         let mut used = render_frames(&gpu, &scene, &settings, technique, 3);
         used.restart(7, 0).unwrap();
