@@ -88,3 +88,17 @@ fn closed_scenes_are_as_bright_as_the_path_tracer_finds_them() {
         }
     }
 }
+
+/// A path whose surface moves has no place to go on from: where all of the box moves, each frame's paths begin anew.
+#[test]
+fn paths_end_where_their_surface_moves() {
+    let mut scene = builtin("cornell-object");
+    let longest = |scene: &Scene| {
+        let chains = output(&rendered(scene, &settings(32, 20), &[], 3), "chain_vertices");
+        chains.pixels.iter().map(|pixel| pixel[0]).fold(0.0, f32::max)
+    };
+    assert_eq!(longest(&scene), 2.0);
+    let moving = scene.instances.last().expect("the sphere").node;
+    scene.instances.iter_mut().for_each(|instance| instance.node = moving);
+    assert_eq!(longest(&scene), 1.0);
+}
