@@ -4,8 +4,9 @@
 
 layout(local_size_x = 8, local_size_y = 4) in;
 
-/// A filter has summed up the diffuse terms, and diffuse_direct is its result.
-layout(constant_id = 202) const bool FILTERED = false;
+/// A filter has summed up two terms, and the first is its result.
+layout(constant_id = 202) const bool ONE_DIFFUSE = false;
+layout(constant_id = 204) const bool ONE_SPECULAR = false;
 
 layout(set = 1, binding = 0, COLOR_FORMAT) readonly uniform image2D before;
 layout(set = 1, binding = 1, COLOR_FORMAT) readonly uniform image2D attenuation;
@@ -21,10 +22,13 @@ void main() {
         return;
     }
     vec3 diffuse = imageLoad(diffuse_direct, pixel).rgb;
-    if (!FILTERED) {
+    if (!ONE_DIFFUSE) {
         diffuse += imageLoad(diffuse_indirect, pixel).rgb;
     }
-    vec3 specular = imageLoad(specular_direct, pixel).rgb + imageLoad(specular_indirect, pixel).rgb;
+    vec3 specular = imageLoad(specular_direct, pixel).rgb;
+    if (!ONE_SPECULAR) {
+        specular += imageLoad(specular_indirect, pixel).rgb;
+    }
     vec3 sum = imageLoad(before, pixel).rgb + imageLoad(attenuation, pixel).rgb * diffuse + specular;
     imageStore(radiance, pixel, storable(vec4(sum, 1.0)));
 }

@@ -101,6 +101,9 @@ layout(constant_id = 152) const uint NHPSF_DISTANCE = 0;
 //@ nhpsf.unknown trace trace|dark
 /// Where no cell knows the vertex that a path would end at: it goes on as without a filter, or nothing comes from there, so that depth grows with frames alone. Trace costs whole paths in the first frame, and where the camera shows what is new.
 layout(constant_id = 153) const uint NHPSF_UNKNOWN = 0;
+//@ hpsf.split off off|on
+/// Direct and indirect light share a table, or have one each, and are smoothed apart. On keeps shadows sharp where indirect light is smooth and noisy; costs the table's passes and bytes once more.
+layout(constant_id = 160) const uint HPSF_SPLIT = 0;
 
 //@ anhpsf.transport last last|all
 /// Between which cells of a continued path light travels in a frame: from its newest vertex to the one before, or from each to the one before (Meijer, section 7). All: light from deep comes sooner; 64 bytes and as many lookups for each bounce of paths.max_bounces. Where things move: the last.
@@ -201,18 +204,36 @@ struct Parameters {
     //@ hpsf.limit 0 0..1000000
     /// A sample adds no more than so many times what its cell knows from hpsf.few samples; 0: no limit. Removes fireflies; darkens, and light that fewer samples find fades.
     float hpsf_limit;
-    //@ hpsf.smooth 0 0..4 passes
-    /// Passes of an edge-avoiding filter over the screen, each twice as wide as the one before, for what the jitter of cells leaves as noise. More blur shadows; 25 taps each.
+    //@ hpsf.smooth 0 0..5 passes
+    /// Passes of an edge-avoiding filter over the screen, each twice as wide as the one before, for what cells leave as noise; with hpsf.split, of direct light alone. More blur shadows; 25 taps each.
     uint hpsf_smooth;
-    //@ hpsf.smooth_reach 1 0.01..16 pixels
+    //@ hpsf.smooth_indirect 0 0..5 passes
+    /// The same for indirect light where hpsf.split is on.
+    uint hpsf_smooth_indirect;
+    //@ hpsf.smooth_specular 0 0..5 passes
+    /// The same for what other lobes than the diffuse one reflect at the filter vertex, which no cell averages. More blur glossy reflections.
+    uint hpsf_smooth_specular;
+    //@ hpsf.smooth_reach 2 0.01..16 pixels
     /// How far from a vertex's tangent plane that filter takes others for similar, as large as a pixel appears there.
     float hpsf_smooth_reach;
-    //@ hpsf.smooth_angle 30 1..180 degrees
+    //@ hpsf.smooth_angle 60 1..180 degrees
     /// Largest angle between the normals of vertices that it takes for similar.
     float hpsf_smooth_angle;
-    //@ hpsf.smooth_few 256 1..100000 samples
-    /// A pixel whose cells know more samples than this is smoothed so many times less. Fewer stay sharper over frames, and noisier.
-    uint hpsf_smooth_few;
+    //@ hpsf.smooth_blind 1 1..5 passes
+    /// How many of these passes take little account of luminance while samples are few. More: less noise, and less light lost with bright samples that nothing around resembles; blurrier shadows in the first frames.
+    uint hpsf_smooth_blind;
+    //@ hpsf.smooth_indirect_blind 3 1..5 passes
+    /// The same for indirect light.
+    uint hpsf_smooth_indirect_blind;
+    //@ hpsf.smooth_specular_blind 3 1..5 passes
+    /// The same for what other lobes reflect.
+    uint hpsf_smooth_specular_blind;
+    //@ hpsf.smooth_few 64 0..10000 samples
+    /// In those passes a mean over n samples counts as so much over n times noisier than it seems, for few samples say little about how noisy they are.
+    float hpsf_smooth_few;
+    //@ hpsf.smooth_noise 1.6 0.01..1000 standard deviations
+    /// Largest difference in luminance that the later of these passes take for noise. More: less noise, blurrier shadows.
+    float hpsf_smooth_noise;
     //@ nhpsf.vertices 2 1..16 vertices
     /// Diffuse vertices of a path whose samples enter cells; one more is only looked up. More fill hidden cells and bring light from farther in a frame, at a shadow ray, a scattered ray and 48 bytes each. 1: cells out of view are unknown. At most paths.max_bounces.
     uint nhpsf_vertices;

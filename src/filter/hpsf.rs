@@ -12,7 +12,8 @@
 mod changes;
 
 use super::nhpsf;
-use crate::frame::{BufferHandle, FrameBuilder, History, ImageHandle, PassBuilder};
+use super::smooth::Noisy;
+use crate::frame::{BufferHandle, FrameBuilder, History, PassBuilder};
 use crate::gpu::{GpuError, vk};
 use crate::paths::Retraced;
 use crate::paths::terms::Terms;
@@ -22,6 +23,7 @@ use crate::paths::vertices::PathVertices;
 const CAPACITY: u32 = 221;
 const SAMPLE_BITS: u32 = 222;
 const FLOAT_SUMS: u32 = 223;
+const PART: u32 = 231;
 
 /// Names of outputs about the table: slots looked at for each pixel's sample, its failed insertions, those that share another key's slot;
 /// slots, and taken ones.
@@ -34,9 +36,58 @@ const CELL: u64 = 16;
 /// A float plus 1 is the same float from here on: all of a frame's samples may meet in one cell.
 const MOST_COUNTED_IN_FLOATS: u64 = 1 << 24;
 
+/// Which light a table is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    Both,
+    Direct,
+    Indirect,
+}
+
+/// Names of a table's passes and outputs.
+struct Names {
+    clear: &'static str,
+    claim: &'static str,
+    evict: &'static str,
+    collect: &'static str,
+    merge: &'static str,
+    resolve: &'static str,
+    mean: &'static str,
+    samples: &'static str,
+}
+
+impl Part {
+    fn names(self) -> Names {
+        match self {
+            Self::Both => Names {
+                clear: "hpsf clear",
+                claim: "hpsf claim",
+                evict: "hpsf evict",
+                collect: "hpsf collect",
+                merge: "hpsf merge",
+                resolve: "hpsf resolve",
+                mean: "diffuse",
+                samples: "hpsf_samples",
+            },
+            Self::Direct => Names { mean: "direct", ..Self::Both.names() },
+            Self::Indirect => Names {
+                clear: "hpsf clear indirect",
+                claim: "hpsf claim indirect",
+                evict: "hpsf evict indirect",
+                collect: "hpsf collect indirect",
+                merge: "hpsf merge indirect",
+                resolve: "hpsf resolve indirect",
+                mean: "indirect",
+                samples: "hpsf_samples_indirect",
+            },
+        }
+    }
+}
+
 /// What the table depends on.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
+    pub part: Part,
     pub cells_per_pixel: f64,
     /// Cells that a sample is added to.
     pub levels: u32,
@@ -66,13 +117,6 @@ pub struct Paths {
     pub chains: Option<PathVertices>,
     /// Paths of the last frame that were traced again: cells forget where they tell of a change.
     pub retraced: Option<Retraced>,
-}
-
-/// The mean over a cell, and the samples that it is over.
-#[derive(Debug, Clone, Copy)]
-pub struct Filtered {
-    pub diffuse: ImageHandle,
-    pub samples: ImageHandle,
 }
 
 /// Cells of the world, and what is known of them.
@@ -121,13 +165,13 @@ impl Table {
         })
     }
 
-    pub fn filter(&self, frame: &mut FrameBuilder, paths: &Paths) -> Result<Filtered, GpuError> {
+    pub fn filter(&self, frame: &mut FrameBuilder, paths: &Paths) -> Result<Noisy, GpuError> {
         let terms = &paths.terms;
         if let Some(vertices) = &paths.behind {
             nhpsf::transport(frame, self, terms, vertices)?;
         }
         if self.options.swapped {
-            frame.fill("hpsf clear", self.keys.current, 0);
+            frame.fill(self.options.part.names().clear, self.keys.current, 0);
         }
         let behind = || [&paths.behind, &paths.chains].into_iter().flatten().filter(|vertices| vertices.options.sampled() > 0);
         if self.options.ordered || self.options.evicts {
@@ -152,12 +196,12 @@ impl Table {
         V: Iterator<Item = &'v PathVertices>,
     {
         let samples = frame.pixels();
-        self.claim(reads_vertices(frame.pass("hpsf claim", "filter/hpsf/claim_ordered"), terms), samples)?;
+        self.claim(reads_vertices(frame.pass(self.options.part.names().claim, "filter/hpsf/claim_ordered"), terms), samples)?;
         for vertices in behind() {
             nhpsf::claim(frame, self, vertices)?;
         }
         if self.options.evicts {
-            self.evict(reads_vertices(frame.pass("hpsf evict", "filter/hpsf/evict"), terms), samples)?;
+            self.evict(reads_vertices(frame.pass(self.options.part.names().evict, "filter/hpsf/evict"), terms), samples)?;
             for vertices in behind() {
                 nhpsf::evict(frame, self, vertices)?;
             }
@@ -179,7 +223,8 @@ impl Table {
     fn collect(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {
         let stem = self.stem("filter/hpsf/collect_float", "filter/hpsf/collect_fixed");
         let samples = frame.pixels();
-        self.insert(reads_samples(frame.pass("hpsf collect", stem), terms), samples)
+        let pass = frame.pass(self.options.part.names().collect, stem).constant(PART, self.options.part as u32);
+        self.insert(reads_samples(pass, terms), samples)
     }
 
     /// The stem that is made for this table.
@@ -203,21 +248,24 @@ impl Table {
     }
 
     fn merge(&self, frame: &mut FrameBuilder) -> Result<(), GpuError> {
-        let pass = frame.pass("hpsf merge", "filter/hpsf/merge").elements(self.capacity).constant(CAPACITY, self.capacity);
+        let pass =
+            frame.pass(self.options.part.names().merge, "filter/hpsf/merge").elements(self.capacity).constant(CAPACITY, self.capacity);
         let pass = pass.constant(SAMPLE_BITS, sample_bits(self.insertions)).constant(FLOAT_SUMS, self.float_sums.into());
         let pass = pass.updates("keys", self.keys.current).updates("sums", self.sums);
         pass.reads("seeds", self.seeds).updates("cells", self.cells.current).add()
     }
 
-    fn resolve(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<Filtered, GpuError> {
-        let diffuse = frame.color_image("diffuse")?;
-        let samples = frame.image("hpsf_samples", vk::Format::R32_UINT)?;
+    fn resolve(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<Noisy, GpuError> {
+        let names = self.options.part.names();
+        let mean = frame.color_image(names.mean)?;
+        let samples = frame.image(names.samples, vk::Format::R32_UINT)?;
         let touched = u64::from(frame.pixels());
-        let pass = reads_samples(frame.pass("hpsf resolve", "filter/hpsf/resolve"), terms).constant(CAPACITY, self.capacity);
+        let pass = frame.pass(names.resolve, "filter/hpsf/resolve").constant(PART, self.options.part as u32);
+        let pass = reads_samples(pass, terms).constant(CAPACITY, self.capacity);
         let pass = pass.reads("keys", self.keys.current).touching(touched * self.key_bytes);
         let pass = pass.reads("cells", self.cells.current).touching(touched * CELL);
-        pass.writes("diffuse", diffuse).writes("hpsf_samples", samples).add()?;
-        Ok(Filtered { diffuse, samples })
+        pass.writes("mean", mean).writes("samples", samples).add()?;
+        Ok(Noisy { mean, samples })
     }
 
     fn statistics(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {

@@ -1,30 +1,80 @@
-//! An edge-avoiding a-trous filter over the screen: shaders_glsl/filter/smooth.comp, Dammertz et al. 2010.
+//! An edge-avoiding a-trous filter over the screen, guided by variance: shaders_glsl/filter/smooth/, Dammertz et al. 2010, Schied et al. 2017.
 //!
-//! Takes a filter's result and the vertices; returns `smoothed`, after passes whose taps are 1, 2, 4, ... pixels apart. No history. A pass
-//! reads 40 bytes per pixel (its other taps come from caches) and writes 16.
+//! Takes part of the light and the filter vertices; returns it smoothed, after passes whose taps are 1, 2, 4, ... pixels apart. No history.
+//! A pass reads 40 bytes per pixel (its other taps come from caches) and writes 16, 32 and 8 at fp16.
 
-use crate::filter::hpsf::Filtered;
 use crate::frame::{FrameBuilder, ImageHandle};
-use crate::gpu::GpuError;
-use crate::paths::terms::FilterVertex;
+use crate::gpu::{GpuError, vk};
+use crate::paths::terms::{FilterVertex, Terms};
 
-/// Specialization constant: pixels between taps.
+/// Specialization constants: pixels between taps, and whether few samples are taken to be noisier than they seem.
 const STEP: u32 = 224;
-const NAMES: [&str; 4] = ["smooth 1", "smooth 2", "smooth 3", "smooth 4"];
+const BLIND: u32 = 233;
 
-pub fn add(frame: &mut FrameBuilder, vertex: &FilterVertex, filtered: Filtered, passes: usize) -> Result<ImageHandle, GpuError> {
-    if passes == 0 {
-        return Ok(filtered.diffuse);
+/// How often, and how many of these are blind. Direct light has edges soon; what fewer samples find takes more of them to be known by.
+#[derive(Debug, Clone, Copy)]
+pub struct Passes {
+    pub count: usize,
+    pub blind: usize,
+}
+
+/// The mean over samples, w being the variance of its luminance, and how many samples it is over.
+#[derive(Debug, Clone, Copy)]
+pub struct Noisy {
+    pub mean: ImageHandle,
+    pub samples: ImageHandle,
+}
+
+/// What is smoothed.
+pub struct Layer {
+    passes: [&'static str; 5],
+    smoothed: &'static str,
+    halfway: &'static str,
+}
+
+pub const DIFFUSE: Layer =
+    Layer { passes: ["smooth 1", "smooth 2", "smooth 3", "smooth 4", "smooth 5"], smoothed: "smoothed", halfway: "smoothed_halfway" };
+
+pub const DIRECT: Layer = Layer {
+    passes: ["smooth direct 1", "smooth direct 2", "smooth direct 3", "smooth direct 4", "smooth direct 5"],
+    smoothed: "smoothed_direct",
+    halfway: "smoothed_direct_halfway",
+};
+
+pub const INDIRECT: Layer = Layer {
+    passes: ["smooth indirect 1", "smooth indirect 2", "smooth indirect 3", "smooth indirect 4", "smooth indirect 5"],
+    smoothed: "smoothed_indirect",
+    halfway: "smoothed_indirect_halfway",
+};
+
+const SPECULAR: Layer = Layer {
+    passes: ["smooth specular 1", "smooth specular 2", "smooth specular 3", "smooth specular 4", "smooth specular 5"],
+    smoothed: "smoothed_specular",
+    halfway: "smoothed_specular_halfway",
+};
+
+pub fn add(frame: &mut FrameBuilder, vertex: &FilterVertex, noisy: Noisy, layer: &Layer, passes: Passes) -> Result<ImageHandle, GpuError> {
+    if passes.count == 0 {
+        return Ok(noisy.mean);
     }
-    let smoothed = frame.color_image("smoothed")?;
-    let between = if passes > 1 { frame.color_image("smoothed_halfway")? } else { smoothed };
-    let mut source = filtered.diffuse;
-    for (i, name) in NAMES.into_iter().enumerate().take(passes) {
+    let smoothed = frame.color_image(layer.smoothed)?;
+    let between = if passes.count > 1 { frame.color_image(layer.halfway)? } else { smoothed };
+    let mut source = noisy.mean;
+    for (i, name) in layer.passes.into_iter().enumerate().take(passes.count) {
         // They take turns, and the last one writes `smoothed`.
-        let target = if (passes - i) % 2 == 1 { smoothed } else { between };
-        let pass = frame.pass(name, "filter/smooth").constant(STEP, 1 << i).reads("noisy", source).writes("smoothed", target);
-        pass.reads("samples", filtered.samples).reads("filter_position", vertex.position).reads("filter_normal", vertex.normal).add()?;
+        let target = if (passes.count - i) % 2 == 1 { smoothed } else { between };
+        let pass = frame.pass(name, "filter/smooth/step").constant(STEP, 1 << i).constant(BLIND, (i < passes.blind).into());
+        let pass = pass.reads("noisy", source).reads("samples", noisy.samples).writes("smoothed", target);
+        pass.reads("filter_position", vertex.position).reads("filter_normal", vertex.normal).add()?;
         source = target;
     }
     Ok(smoothed)
+}
+
+/// Both specular terms in one image.
+pub fn add_specular(frame: &mut FrameBuilder, terms: &Terms, passes: Passes) -> Result<ImageHandle, GpuError> {
+    let noisy = Noisy { mean: frame.color_image("specular")?, samples: frame.image("specular_samples", vk::Format::R32_UINT)? };
+    let pass = frame.pass("smooth specular", "filter/smooth/specular").writes("specular", noisy.mean).writes("samples", noisy.samples);
+    pass.reads("specular_direct", terms.specular_direct).reads("specular_indirect", terms.specular_indirect).add()?;
+    add(frame, &terms.vertex, noisy, &SPECULAR, passes)
 }

@@ -23,7 +23,7 @@ fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle,
     let list = ListOptions { most: number("nhpsf.vertices").min(number("paths.max_bounces")).max(1), last_is_read: true };
     let keys = u64::from(frame.pixels());
     let length = anhpsf::chain_length(number("anhpsf.transport") == 1, number("paths.max_bounces"));
-    hpsf::passes_of(frame, options, 1 + list.sampled() + length, |frame, table| {
+    hpsf::passes_of(frame, options, 1 + list.sampled() + length, false, |frame, table| {
         let (terms, vertices, ends) = paths::add_with_ends(frame, list, |pass| table.looks_up(pass, keys))?;
         let chains = anhpsf::add(frame, table, &vertices, ends, length)?;
         Ok(Paths { terms, behind: Some(vertices), chains: Some(chains), retraced: None })

@@ -2,11 +2,12 @@
 
 use super::{PassOptions, Technique};
 use crate::display::{composite, temporal};
-use crate::filter::hpsf::{self, Options, Paths, Table};
-use crate::filter::smooth;
+use crate::filter::hpsf::{self, Options, Part, Paths, Table};
+use crate::filter::smooth::{self, Layer, Passes};
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
 use crate::paths::gbuffer;
+use crate::paths::terms::Terms;
 
 /// The value of hpsf.time.
 const HYBRID: f64 = 3.0;
@@ -22,24 +23,29 @@ pub(super) const TECHNIQUE: Technique = Technique {
 };
 
 fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
-    passes_of(frame, options, 1, |frame, _| add_paths(frame, options))
+    let splits = options.parameters.number("hpsf.split") == 1.0;
+    passes_of(frame, options, 1, splits, |frame, _| add_paths(frame, options))
 }
 
-/// `vertices`: of a path that are added to cells.
+/// `vertices`: of a path that are added to cells. `splits`: direct and indirect light have a table each, which light that vertices send each
+/// other cannot be parted into.
 pub(super) fn passes_of(
     frame: &mut FrameBuilder,
     options: PassOptions,
     vertices: u32,
+    splits: bool,
     add_paths: impl FnOnce(&mut FrameBuilder, &Table) -> Result<Paths, GpuError>,
 ) -> Result<ImageHandle, GpuError> {
     let over_frames = options.parameters.number("hpsf.temporal") == 1.0;
     let wanted = over_frames || options.wants(&gbuffer::OUTPUTS);
     let gbuffer = wanted.then(|| gbuffer::add(frame)).transpose()?;
-    let table = Table::new(frame, Options { vertices, ..table_options(options) })?;
+    let part = if splits { Part::Direct } else { Part::Both };
+    let table = Table::new(frame, Options { vertices, ..table_options(options, part) })?;
+    let indirect = splits.then(|| Table::new(frame, table_options(options, Part::Indirect))).transpose()?;
     let paths = add_paths(frame, &table)?;
-    let filtered = table.filter(frame, &paths)?;
-    let diffuse = smooth::add(frame, &paths.terms.vertex, filtered, options.parameters.number("hpsf.smooth") as usize)?;
-    let radiance = composite::add_filtered(frame, &paths.terms, diffuse)?;
+    let diffuse = filter_diffuse(frame, &table, indirect.as_ref(), &paths, options)?;
+    let specular = filter_specular(frame, &paths.terms, options)?;
+    let radiance = composite::add_parts(frame, &paths.terms, diffuse, specular)?;
     match gbuffer {
         Some(gbuffer) if over_frames => temporal::add(frame, &gbuffer, radiance),
         _ => Ok(radiance),
@@ -55,9 +61,45 @@ fn add_paths(frame: &mut FrameBuilder, options: PassOptions) -> Result<Paths, Gp
     Ok(Paths { terms, behind: None, chains: None, retraced: Some(retraced) })
 }
 
-fn table_options(options: PassOptions) -> Options {
+/// Direct and indirect light, or twice their sum.
+fn filter_diffuse(
+    frame: &mut FrameBuilder,
+    table: &Table,
+    indirect: Option<&Table>,
+    paths: &Paths,
+    options: PassOptions,
+) -> Result<[ImageHandle; 2], GpuError> {
+    let mut smoothed = |table: &Table, layer: &Layer, key| {
+        let noisy = table.filter(frame, paths)?;
+        smooth::add(frame, &paths.terms.vertex, noisy, layer, smoothing(options, key))
+    };
+    match indirect {
+        None => Ok([smoothed(table, &smooth::DIFFUSE, "hpsf.smooth")?; 2]),
+        Some(indirect) => {
+            let direct = smoothed(table, &smooth::DIRECT, "hpsf.smooth")?;
+            Ok([direct, smoothed(indirect, &smooth::INDIRECT, "hpsf.smooth_indirect")?])
+        }
+    }
+}
+
+/// What other lobes reflect, likewise.
+fn filter_specular(frame: &mut FrameBuilder, terms: &Terms, options: PassOptions) -> Result<[ImageHandle; 2], GpuError> {
+    let passes = smoothing(options, "hpsf.smooth_specular");
+    if passes.count == 0 {
+        return Ok([terms.specular_direct, terms.specular_indirect]);
+    }
+    Ok([smooth::add_specular(frame, terms, passes)?; 2])
+}
+
+fn smoothing(options: PassOptions, key: &str) -> Passes {
+    let number = |key: &str| options.parameters.number(key) as usize;
+    Passes { count: number(key), blind: number(&format!("{key}_blind")) }
+}
+
+fn table_options(options: PassOptions, part: Part) -> Options {
     let number = |key| options.parameters.number(key);
     Options {
+        part,
         cells_per_pixel: number("hpsf.cells"),
         levels: number("hpsf.levels") as u32,
         vertices: 1,
@@ -66,6 +108,6 @@ fn table_options(options: PassOptions) -> Options {
         evicts: number("hpsf.eviction") == 1.0,
         exact_keys: number("hpsf.keys") == 1.0,
         float_sums: number("hpsf.sums") == 1.0,
-        statistics: options.wants(&hpsf::STATISTICS),
+        statistics: part != Part::Indirect && options.wants(&hpsf::STATISTICS),
     }
 }

@@ -4,17 +4,19 @@ use super::{Technique, hpsf};
 
 pub(super) const TECHNIQUE: Technique = Technique {
     name: "hpsf+",
-    help: "hpsf at the finest cells that have enough samples, smoothed over the screen and antialiased over frames",
+    help: "hpsf at fine cells, direct and indirect light apart, smoothed over the screen as far as noise goes, and antialiased over frames",
     defaults: &[
         ("paths.scramble", "tile"),
         ("frame.jitter", "on"),
         ("hpsf.temporal", "on"),
-        ("hpsf.smooth", "2"),
-        ("hpsf.lookups", "8"),
-        ("hpsf.width", "6"),
+        ("hpsf.split", "on"),
+        ("hpsf.smooth", "4"),
+        ("hpsf.smooth_indirect", "5"),
+        ("hpsf.smooth_specular", "5"),
+        ("hpsf.lookups", "0"),
+        ("hpsf.levels", "1"),
+        ("hpsf.width", "3"),
         ("hpsf.jitter", "0.4"),
-        ("hpsf.few", "24"),
-        ("hpsf.normal_bits", "8"),
     ],
     ..hpsf::TECHNIQUE
 };

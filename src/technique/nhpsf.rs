@@ -18,7 +18,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
 fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
     let list = list_of(options);
     let keys = u64::from(frame.pixels());
-    hpsf::passes_of(frame, options, 1 + list.sampled(), |frame, table| {
+    hpsf::passes_of(frame, options, 1 + list.sampled(), false, |frame, table| {
         let (terms, vertices) = paths::add_with_vertices(frame, list, |pass| table.looks_up(pass, keys))?;
         Ok(Paths { terms, behind: Some(vertices), chains: None, retraced: None })
     })

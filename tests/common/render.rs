@@ -82,9 +82,13 @@ pub fn render_frames(gpu: &Gpu, scene: &Scene, settings: &Settings, technique: &
     renderer
 }
 
-/// What the last pass of a filter makes of the radiance behind the filter vertices.
+/// What the last pass of a filter makes of the radiance behind the filter vertices, all of it.
 pub fn filtered(renderer: &Renderer) -> Image {
-    renderer.output("smoothed").unwrap().unwrap_or_else(|| output(renderer, "diffuse"))
+    let last = |smoothed: &str, noisy: &str| renderer.output(smoothed).unwrap().or_else(|| renderer.output(noisy).unwrap());
+    let Some(mut sum) = last("smoothed_direct", "direct") else { return last("smoothed", "diffuse").expect("the technique filters") };
+    let indirect = last("smoothed_indirect", "indirect").expect("it follows direct light");
+    sum.pixels.iter_mut().zip(&indirect.pixels).for_each(|(sum, pixel)| (0..3).for_each(|c| sum[c] += pixel[c]));
+    sum
 }
 
 pub fn output(renderer: &Renderer, name: &str) -> Image {

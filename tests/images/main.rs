@@ -5,6 +5,8 @@ mod common;
 
 mod agreement;
 mod budgets;
+mod denoised;
+mod detail;
 mod exact;
 mod kernels;
 mod motion;

@@ -20,7 +20,7 @@ fn under_a_constant_sky(base_color: [f32; 4]) -> (Scene, Settings) {
 }
 
 /// Every switch of a filter that changes what it adds up.
-const SWITCHES: [&[(&str, &str)]; 14] = [
+const SWITCHES: [&[(&str, &str)]; 15] = [
     &[],
     &[("hpsf.sums", "float"), ("hpsf.jitter_by", "sampler")],
     &[("hpsf.table", "swapped"), ("hpsf.levels", "3")],
@@ -34,7 +34,8 @@ const SWITCHES: [&[(&str, &str)]; 14] = [
     &[("hpsf.eviction", "priority"), ("hpsf.cells", "0.01"), ("hpsf.width", "4")],
     &[("hpsf.blend", "on"), ("hpsf.limit", "1"), ("hpsf.few", "1")],
     &[("sspsf.window", "3")],
-    &[("hpsf.smooth", "4"), ("hpsf.smooth_few", "100000"), ("paths.scramble", "tile"), ("frame.jitter", "on")],
+    &[("hpsf.split", "on"), ("hpsf.smooth", "3"), ("hpsf.smooth_specular", "2")],
+    &[("hpsf.smooth", "5"), ("hpsf.smooth_noise", "1000"), ("paths.scramble", "tile"), ("frame.jitter", "on")],
 ];
 
 #[test]

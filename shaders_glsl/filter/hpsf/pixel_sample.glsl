@@ -4,14 +4,15 @@
 layout(set = 1, binding = 13, COLOR_FORMAT) readonly uniform image2D diffuse_direct;
 layout(set = 1, binding = 14, COLOR_FORMAT) readonly uniform image2D diffuse_indirect;
 
+#include "filter/hpsf/part.glsl"
+
 bool find_sample(out CellSample one) {
     if (!find_point(one.at)) {
         return false;
     }
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    vec4 direct = imageLoad(diffuse_direct, pixel);
-    vec4 indirect = imageLoad(diffuse_indirect, pixel);
-    one.radiance = direct.rgb + indirect.rgb;
+    vec4 own = own_sample(pixel);
+    one.radiance = own.rgb;
     one.dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
-    return direct.w * indirect.w != 0.0;
+    return own.w != 0.0;
 }

@@ -3,9 +3,10 @@
 // The pixel reads the cell that its own sample went to, or the mean of hpsf.lookups cells, found by as many further jitters: more of them
 // leave less of the jitter's noise. A cell of fewer samples than hpsf.few is helped out by cells of similar normals at its place (Binder,
 // 3.2.2), by its neighbours in the tangent plane (3.3.1), or by the next coarser level that has enough (3.3.2). Where the sample's
-// insertion failed, the pixel shows its own radiance unfiltered, and `hpsf_samples` is 0.
+// insertion failed, the pixel shows its own radiance unfiltered, and `samples` is 0.
 #include "filter/hpsf/cell.glsl"
 #include "filter/hpsf/find.glsl"
+#include "lib/colour.glsl"
 #include "lib/storage.glsl"
 
 layout(local_size_x = 8, local_size_y = 4) in;
@@ -17,9 +18,12 @@ layout(set = 1, binding = 3, r32ui) readonly uniform uimage2D filter_normal;
 layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D filter_incident;
 layout(set = 1, binding = 5, scalar) readonly buffer Keys { uint at[]; } keys;
 layout(set = 1, binding = 6, scalar) readonly buffer Cells { uvec4 at[]; } cells;
-layout(set = 1, binding = 7, COLOR_FORMAT) writeonly uniform image2D diffuse;
+/// w: variance of its luminance; below 0 where nothing is known, not even by a sample of the pixel's own.
+layout(set = 1, binding = 7, COLOR_FORMAT) writeonly uniform image2D mean;
 /// Samples that the pixel's radiance is the mean of; 0 where it is its own alone, or there is no filter vertex.
-layout(set = 1, binding = 8, r32ui) writeonly uniform uimage2D hpsf_samples;
+layout(set = 1, binding = 8, r32ui) writeonly uniform uimage2D samples;
+
+#include "filter/hpsf/part.glsl"
 
 uint key_word(uint at) {
     return keys.at[at];
@@ -112,6 +116,12 @@ Cell look_up(FilterPoint point, vec4 numbers) {
     return best;
 }
 
+/// Of the mean's luminance, as the pixel's own sample has it, one of `count`: noisy, and right in the mean.
+float variance_of_mean(vec3 own, vec3 average, uint count) {
+    float deviation = luminance(count > 1u ? own - average : own);
+    return deviation * deviation / float(max(count, 2u) - 1u);
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
@@ -119,29 +129,31 @@ void main() {
     }
     vec4 position = imageLoad(filter_position, pixel);
     if (!(position.w > 0.0)) {
-        imageStore(diffuse, pixel, vec4(0.0));
-        imageStore(hpsf_samples, pixel, uvec4(0u));
+        imageStore(mean, pixel, vec4(0.0));
+        imageStore(samples, pixel, uvec4(0u));
         return;
     }
     FilterPoint point = filter_point(uvec2(pixel), position, imageLoad(filter_normal, pixel).x, imageLoad(filter_incident, pixel).x);
+    vec4 own = own_sample(pixel);
     vec3 sum = vec3(0.0);
     uint found = 0u;
-    uint samples = 0u;
+    uint known = 0u;
     for (uint i = 1u; i <= parameters.hpsf_lookups; i++) {
         Cell cell = look_up(point, jitter_numbers(uvec2(pixel), i));
         if (cell.count > 0u) {
             sum += cell.mean;
-            samples += cell.count;
+            known += cell.count;
             found++;
         }
     }
     if (found == 0u) {
-        Cell own = look_up(point, jitter_numbers(uvec2(pixel), 0u));
-        bool known = own.count > 0u;
-        sum = known ? own.mean : imageLoad(diffuse_direct, pixel).rgb + imageLoad(diffuse_indirect, pixel).rgb;
-        samples = own.count;
+        Cell cell = look_up(point, jitter_numbers(uvec2(pixel), 0u));
+        sum = cell.count > 0u ? cell.mean : own.w * own.rgb;
+        known = cell.count;
         found = 1u;
     }
-    imageStore(diffuse, pixel, storable(vec4(sum / float(found), 1.0)));
-    imageStore(hpsf_samples, pixel, uvec4(samples));
+    vec3 average = sum / float(found);
+    float variance = known == 0u && own.w == 0.0 ? -1.0 : variance_of_mean(own.rgb, average, known / found);
+    imageStore(mean, pixel, storable(vec4(average, variance)));
+    imageStore(samples, pixel, uvec4(known));
 }
