@@ -19,6 +19,8 @@ struct CellKey {
     /// Cells are 2^level metres wide.
     int level;
     uint normal;
+    /// Of a layered material (Binder, section 3.1.2): 0 its diffuse lobe; else what the radiance of its other lobes depends on.
+    uint layer;
 };
 
 /// 2^exponent, for -126..127.
@@ -74,12 +76,12 @@ vec3 middle_of_normals(uint normal, uint bits) {
 
 /// The cell of the next coarser level that this one is part of.
 CellKey parent_of(CellKey key) {
-    return CellKey(key.cell >> 1, key.level + 1, key.normal);
+    return CellKey(key.cell >> 1, key.level + 1, key.normal, key.layer);
 }
 
 /// One of the eight cells of the next finer level.
 CellKey child_of(CellKey key, uint i) {
-    return CellKey(key.cell * 2 + ivec3(i & 1u, (i >> 1) & 1u, i >> 2), key.level - 1, key.normal);
+    return CellKey(key.cell * 2 + ivec3(i & 1u, (i >> 1) & 1u, i >> 2), key.level - 1, key.normal, key.layer);
 }
 
 /// Where to look for the key: nested PCG, as Meijer's algorithm 2.
@@ -87,7 +89,8 @@ uint hash_index(CellKey key, bool with_normal) {
     uint hash = pcg_hash(uint(key.level) + (with_normal ? key.normal << 16 : 0u));
     hash = pcg_hash(hash + uint(key.cell.z));
     hash = pcg_hash(hash + uint(key.cell.x));
-    return pcg_hash(hash + uint(key.cell.y));
+    hash = pcg_hash(hash + uint(key.cell.y));
+    return key.layer == 0u ? hash : pcg_hash(hash + key.layer);
 }
 
 uint murmur_mix(uint hash, uint word) {
@@ -100,13 +103,13 @@ uint murmur_mix(uint hash, uint word) {
 /// What marks an empty cell, and is no key's fingerprint.
 const uint NO_FINGERPRINT = 0u;
 
-/// What tells keys at one place apart: Appleby's MurmurHash3 (x86, 32 bits) of the key's words.
+/// What tells keys at one place apart: Appleby's MurmurHash3 (x86, 32 bits) of the key's words, four of them, or five where it has a layer.
 uint hash_fingerprint(CellKey key) {
     uint hash = murmur_mix(0x9747b28cu, uint(key.cell.x));
     hash = murmur_mix(hash, uint(key.cell.y));
     hash = murmur_mix(hash, uint(key.cell.z));
     hash = murmur_mix(hash, uint(key.level & 0xffff) | key.normal << 16);
-    hash ^= 16u;
+    hash = key.layer == 0u ? hash ^ 16u : murmur_mix(hash, key.layer) ^ 20u;
     hash = (hash ^ hash >> 16) * 0x85ebca6bu;
     hash = (hash ^ hash >> 13) * 0xc2b2ae35u;
     return max(hash ^ hash >> 16, 1u);
@@ -114,11 +117,11 @@ uint hash_fingerprint(CellKey key) {
 
 /// As `hash_fingerprint`, of the key without its normal, shortened for the normal's `bits`, which follow as they are: the low ones.
 uint fingerprint_with_normal(CellKey key, uint bits) {
-    uint rest = hash_fingerprint(CellKey(key.cell, key.level, 0u)) << bits;
+    uint rest = hash_fingerprint(CellKey(key.cell, key.level, 0u, key.layer)) << bits;
     return (rest == 0u ? 1u << bits : rest) | key.normal;
 }
 
-/// All of a key in two words, neither of them zero: coordinates modulo 2^16, the level modulo 64, 8 bits of normal. It tells keys apart that
+/// All of a diffuse layer's key in two words, neither of them zero: coordinates modulo 2^16, the level modulo 64, 8 bits of normal. It tells keys apart that
 /// are less than 2^16 cells from each other, as those in one view are: from the eye, cells of one level are at most
 /// 2 / (width in pixels * angle of a pixel) cells away, 2^13 of one pixel in 8K.
 uvec2 exact_key(CellKey key) {

@@ -80,6 +80,18 @@ bool clearcoat_is_delta(Surface s) {
     return s.clearcoat_alpha < MIRROR_ALPHA;
 }
 
+/// Of the lobes other than the diffuse one.
+float least_alpha(Surface s) {
+    return s.clearcoat > 0.0 ? min(s.alpha, s.clearcoat_alpha) : s.alpha;
+}
+
+/// It has lobes other than the diffuse one, none of them of a single direction.
+bool is_glossy(Surface s) {
+    bool delta = reflection_is_delta(s) || glass_part(s) > 0.0 && glass_is_delta(s) || s.clearcoat > 0.0 && clearcoat_is_delta(s);
+    bool reflects = s.metallic > 0.0 || s.transmission > 0.0 || s.clearcoat > 0.0 || s.dielectric_f90 > 0.0;
+    return EFFECT_REFLECTION && reflects && !delta;
+}
+
 /// Reflectance of the opaque dielectric at a microfacet.
 vec3 dielectric_fresnel(Surface s, float cosine) {
     return mix(s.dielectric_f0, vec3(s.dielectric_f90), schlick_rise(cosine));

@@ -258,4 +258,14 @@ HitPoint hit_point(Hit hit, vec3 direction, RayCone cone) {
     return point;
 }
 
+/// The colour of the lobes other than the diffuse one changes over the surface.
+bool is_painted(HitPoint point) {
+    MaterialBuffer materials = MaterialBuffer(frame.materials);
+    uint textures = materials.at[point.material].specular_texture.texture & materials.at[point.material].specular_color_texture.texture
+        & materials.at[point.material].transmission_texture.texture & materials.at[point.material].clearcoat_texture.texture;
+    bool colours = point.surface.metallic > 0.0 || point.surface.transmission > 0.0;
+    bool coloured = EFFECT_VERTEX_COLORS || materials.at[point.material].base_color_texture.texture != ~0u;
+    return EFFECT_TEXTURES && textures != ~0u || colours && coloured;
+}
+
 #endif

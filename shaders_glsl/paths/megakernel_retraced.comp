@@ -28,6 +28,8 @@ layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D filter_position;
 /// Shading normal and the way the path arrives (lib/packing.glsl).
 layout(set = 1, binding = 8, r32ui) writeonly uniform uimage2D filter_normal;
 layout(set = 1, binding = 9, r32ui) writeonly uniform uimage2D filter_incident;
+/// Where the specular terms may be filtered (lib/layer.glsl); else 0.
+layout(set = 1, binding = 13, r32ui) writeonly uniform uimage2D filter_layer;
 layout(set = 1, binding = 10, scalar) writeonly buffer KeptPaths { Kept at[]; } kept;
 layout(set = 1, binding = 11, scalar) writeonly buffer RetracedPaths { Retraced at[]; } retraced;
 /// As ray_count, of the retraced paths: their pixels are those of a smaller picture.

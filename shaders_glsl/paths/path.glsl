@@ -13,6 +13,7 @@
 
 #include "accel/ray.glsl"
 #include "lib/bsdf.glsl"
+#include "lib/layer.glsl"
 #include "lib/lights.glsl"
 #include "lib/ray_cone.glsl"
 #include "lib/sampler.glsl"
@@ -176,6 +177,10 @@ void add_environment(Path path, inout Terms terms) {
 
 const Ray NO_RAY = Ray(vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), -1.0);
 
+bool is_diffuse(HitPoint point) {
+    return max_component(diffuse_albedo(point.surface)) > 0.0;
+}
+
 /// Looks for light at a vertex, by one of `rays` shadow rays; nothing waits where there is none to be found.
 Pending sample_direct(Path path, Terms terms, HitPoint point, vec3 wo, vec4 u, float selection, float rays) {
     Pending pending;
@@ -189,7 +194,7 @@ Pending sample_direct(Path path, Terms terms, HitPoint point, vec3 wo, vec4 u, f
     vec3 albedo = diffuse_albedo(point.surface);
     if (path.vertex == path.filter_vertex) {
         pending.term = vertices_behind(terms) > 0u ? TERM_BEHIND : TERM_DIRECT;
-        pending.diffuse_weight = value.diffuse;
+        pending.diffuse_weight = is_diffuse(point) ? value.diffuse : 0.0;
         pending.specular_weight = path.throughput * value.specular;
         pending.radiance = radiance;
     } else {
@@ -212,7 +217,7 @@ bool scatter(inout Path path, Terms terms, HitPoint point, vec3 wo, vec4 u) {
         return false;
     }
     if (path.vertex == path.filter_vertex) {
-        path.diffuse_weight = next.diffuse_weight;
+        path.diffuse_weight = is_diffuse(point) ? next.diffuse_weight : 0.0;
         path.specular_weight = path.throughput * next.specular_weight;
         path.throughput = vec3(1.0);
     } else {
@@ -239,14 +244,17 @@ bool scatter(inout Path path, Terms terms, HitPoint point, vec3 wo, vec4 u) {
     return true;
 }
 
-bool is_diffuse(HitPoint point) {
-    return max_component(diffuse_albedo(point.surface)) > 0.0;
+/// The layer of the specular terms, where these may be filtered (filter/hpsf/part.glsl says why not everywhere); else 0.
+uint layer_to_filter(Path path, HitPoint point) {
+    bool sees_it = path.filter_vertex == NO_VERTEX && all(equal(path.throughput, vec3(1.0)));
+    bool filters = HPSF_GLOSSY == 1u && sees_it && is_glossy(point.surface) && !is_painted(point);
+    return filters ? glossy_layer(point.material, sqrt(least_alpha(point.surface)), is_diffuse(point)) : 0u;
 }
 
-/// The path arrives at a surface with a diffuse lobe, and finds it to be a filter vertex or not. False where the path ends there.
-bool arrive_at_diffuse(inout Path path, inout HitPoint point, inout Terms terms) {
+/// The path arrives at a surface with a lobe to be filtered, and finds it to be a filter vertex or not. False where the path ends there.
+bool arrive_at_filter(inout Path path, inout HitPoint point, inout Terms terms) {
     vec3 albedo = diffuse_albedo(point.surface);
-    FilterVertex vertex = FilterVertex(point.origin.position, point.surface.normal_ws, path.ray.direction, path.travelled);
+    FilterVertex vertex = FilterVertex(point.origin.position, point.surface.normal_ws, path.ray.direction, path.travelled, layer_to_filter(path, point));
     if (is_in_front(path)) {
         if (path.filter_vertex < NO_VERTEX) {
             path.filter_vertex++;
@@ -298,7 +306,8 @@ bool arrive(inout Path path, Hit hit, inout HitPoint point, inout Terms terms) {
     if (path.vertex > parameters.max_bounces || list_ends(terms)) {
         return false;
     }
-    return !is_diffuse(point) || arrive_at_diffuse(path, point, terms);
+    bool filters = is_diffuse(point) || layer_to_filter(path, point) != 0u;
+    return !filters || arrive_at_filter(path, point, terms);
 }
 
 /// A sphere light in front of what the ray has hit. It stops the ray.

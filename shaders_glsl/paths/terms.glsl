@@ -2,7 +2,7 @@
 //
 //   radiance = before + attenuation * (diffuse_direct + diffuse_indirect) + specular_direct + specular_indirect
 //
-// The filter vertex is the first one with a diffuse lobe, or, with hpsf.vertex, the second or third: final gathering (Binder, figure 10), in
+// The filter vertex is the first one with a diffuse lobe (with hpsf.glossy, or a glossy one: filter/hpsf/part.glsl), or, with hpsf.vertex, the second or third: final gathering (Binder, figure 10), in
 // which `before` holds what the vertices in front of it send themselves. Measured on cornell, 16 paths per pixel: filtering at the second
 // vertex leaves 1/1.7 of the variance of indirect light, 1/2.1 where cells are filled before; the rest is the choice of the first vertex'
 // direction, so that the paper's "dramatically" does not hold here. Of the whole picture (128x72), relMSE is 0.0027, 0.0043 without a filter,
@@ -31,6 +31,8 @@ struct FilterVertex {
     vec3 incident;
     /// Length of the path up to it, metres; 0 where there is none.
     float travelled;
+    /// Of its other lobes (lib/layer.glsl), where the specular terms may be filtered; else 0.
+    uint layer;
 };
 
 #ifdef VERTEX_LIST
@@ -69,7 +71,7 @@ const uint TERM_INDIRECT = 2u;
 const uint TERM_BEHIND = 3u;
 
 Terms no_terms() {
-    FilterVertex none = FilterVertex(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+    FilterVertex none = FilterVertex(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0u);
 #ifdef VERTEX_LIST
     PathVertex nothing = PathVertex(none, vec3(0.0), vec3(0.0));
     return Terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), none, 0u, nothing, vec3(0.0));

@@ -14,6 +14,8 @@ layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D filter_position;
 /// Shading normal and the way the path arrives (lib/packing.glsl).
 layout(set = 1, binding = 8, r32ui) writeonly uniform uimage2D filter_normal;
 layout(set = 1, binding = 9, r32ui) writeonly uniform uimage2D filter_incident;
+/// Where the specular terms may be filtered (lib/layer.glsl); else 0.
+layout(set = 1, binding = 16, r32ui) writeonly uniform uimage2D filter_layer;
 
 #include "paths/write_terms.glsl"
 

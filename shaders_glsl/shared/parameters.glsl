@@ -104,6 +104,9 @@ layout(constant_id = 153) const uint NHPSF_UNKNOWN = 0;
 //@ hpsf.split off off|on
 /// Direct and indirect light share a table, or have one each, and are smoothed apart. On keeps shadows sharp where indirect light is smooth and noisy; costs the table's passes and bytes once more.
 layout(constant_id = 160) const uint HPSF_SPLIT = 0;
+//@ hpsf.glossy off off|on
+/// What glossy lobes reflect where the camera sees them is averaged in cells, too, a table of their own, told apart by where the path comes from; rough metals are filter vertices then. Not mirrors, what is seen in them, or lobes whose colour is a texture. Less noise over frames, blurrier reflections; costs the table's passes and bytes once more.
+layout(constant_id = 161) const uint HPSF_GLOSSY = 0;
 
 //@ anhpsf.transport last last|all
 /// Between which cells of a continued path light travels in a frame: from its newest vertex to the one before, or from each to the one before (Meijer, section 7). All: light from deep comes sooner; 64 bytes and as many lookups for each bounce of paths.max_bounces. Where things move: the last.
@@ -150,6 +153,12 @@ struct Parameters {
     //@ hpsf.normal_jitter 0 0..2 cells
     /// Normals are tilted by up to so much of their quantisation.
     float hpsf_normal_jitter;
+    //@ hpsf.incident_bits 6 0..8 bits
+    /// With hpsf.glossy, cells of glossy lobes are told apart by the direction that paths arrive from, quantised to so many bits. More keep what changes with the view, and more noise.
+    uint hpsf_incident_bits;
+    //@ hpsf.glossy_finer 2 0..4
+    /// And are so many powers of two narrower for each half of roughness. More: sharper highlights of smooth surfaces, and more noise.
+    float hpsf_glossy_finer;
     //@ hpsf.similar 30 1..180 degrees
     /// Largest angle between a normal and the middle of another cell's normals, for hpsf.normals=similar. 180: all normals of a place.
     float hpsf_similar;

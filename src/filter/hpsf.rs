@@ -1,7 +1,8 @@
 //! Hashed path space filtering: shaders_glsl/filter/hpsf/, Binder, chapter 3; Meijer, section 4.2.
 //!
 //! Takes the diffuse terms and their filter vertices; returns `diffuse`, the mean over a cell of the world, and puts out `hpsf_samples`, the
-//! samples that it is over (0: unfiltered). History: the table, persistent or swapped with every frame.
+//! samples that it is over (0: unfiltered). For hpsf.glossy the same for the specular terms, `specular` and `specular_samples`, with 4 bytes
+//! of layer read per pixel and pass more. History: the table, persistent or swapped with every frame.
 //!
 //! Three passes, and before them up to two that give slots in a fixed order (24 bytes of vertex and 4 of key read per pixel and level). collect: each pixel's sample into a cell, 56 bytes read per pixel, and per level 4 bytes of key (exact: 8) read and 28
 //! (float: 16) of sums updated. merge: over slots, 4 bytes read each, and for those taken 32 (16) of sums, 16 of seed and 16 of
@@ -42,6 +43,8 @@ pub enum Part {
     Both,
     Direct,
     Indirect,
+    /// Of the lobes other than the diffuse one.
+    Glossy,
 }
 
 /// Names of a table's passes and outputs.
@@ -79,6 +82,16 @@ impl Part {
                 resolve: "hpsf resolve indirect",
                 mean: "indirect",
                 samples: "hpsf_samples_indirect",
+            },
+            Self::Glossy => Names {
+                clear: "hpsf clear glossy",
+                claim: "hpsf claim glossy",
+                evict: "hpsf evict glossy",
+                collect: "hpsf collect glossy",
+                merge: "hpsf merge glossy",
+                resolve: "hpsf resolve glossy",
+                mean: "specular",
+                samples: "specular_samples",
             },
         }
     }
@@ -196,12 +209,13 @@ impl Table {
         V: Iterator<Item = &'v PathVertices>,
     {
         let samples = frame.pixels();
-        self.claim(reads_vertices(frame.pass(self.options.part.names().claim, "filter/hpsf/claim_ordered"), terms), samples)?;
+        let names = self.options.part.names();
+        self.claim(self.reads_points(frame.pass(names.claim, "filter/hpsf/claim_ordered"), terms), samples)?;
         for vertices in behind() {
             nhpsf::claim(frame, self, vertices)?;
         }
         if self.options.evicts {
-            self.evict(reads_vertices(frame.pass(self.options.part.names().evict, "filter/hpsf/evict"), terms), samples)?;
+            self.evict(self.reads_points(frame.pass(names.evict, "filter/hpsf/evict"), terms), samples)?;
             for vertices in behind() {
                 nhpsf::evict(frame, self, vertices)?;
             }
@@ -223,8 +237,8 @@ impl Table {
     fn collect(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {
         let stem = self.stem("filter/hpsf/collect_float", "filter/hpsf/collect_fixed");
         let samples = frame.pixels();
-        let pass = frame.pass(self.options.part.names().collect, stem).constant(PART, self.options.part as u32);
-        self.insert(reads_samples(pass, terms), samples)
+        let pass = frame.pass(self.options.part.names().collect, stem);
+        self.insert(self.reads_samples(pass, terms), samples)
     }
 
     /// The stem that is made for this table.
@@ -247,9 +261,23 @@ impl Table {
         pass.reads("known_cells", self.cells.previous).reads("known_keys", self.keys.previous).add()
     }
 
+    /// A pass over pixels that finds their samples' keys.
+    fn reads_points<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, terms: &Terms) -> PassBuilder<'b, 'a> {
+        let pass = reads_vertices(pass, terms).constant(PART, self.options.part as u32).reads("filter_layer", terms.vertex.layer);
+        if self.options.part == Part::Glossy { pass } else { pass.touching(0) }
+    }
+
+    fn reads_samples<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, terms: &Terms) -> PassBuilder<'b, 'a> {
+        let [direct, indirect] = match self.options.part {
+            Part::Glossy => [terms.specular_direct, terms.specular_indirect],
+            _ => [terms.diffuse_direct, terms.diffuse_indirect],
+        };
+        self.reads_points(pass.reads("direct", direct).reads("indirect", indirect), terms)
+    }
+
     fn merge(&self, frame: &mut FrameBuilder) -> Result<(), GpuError> {
-        let pass =
-            frame.pass(self.options.part.names().merge, "filter/hpsf/merge").elements(self.capacity).constant(CAPACITY, self.capacity);
+        let pass = frame.pass(self.options.part.names().merge, "filter/hpsf/merge").elements(self.capacity);
+        let pass = pass.constant(PART, self.options.part as u32).constant(CAPACITY, self.capacity);
         let pass = pass.constant(SAMPLE_BITS, sample_bits(self.insertions)).constant(FLOAT_SUMS, self.float_sums.into());
         let pass = pass.updates("keys", self.keys.current).updates("sums", self.sums);
         pass.reads("seeds", self.seeds).updates("cells", self.cells.current).add()
@@ -260,8 +288,7 @@ impl Table {
         let mean = frame.color_image(names.mean)?;
         let samples = frame.image(names.samples, vk::Format::R32_UINT)?;
         let touched = u64::from(frame.pixels());
-        let pass = frame.pass(names.resolve, "filter/hpsf/resolve").constant(PART, self.options.part as u32);
-        let pass = reads_samples(pass, terms).constant(CAPACITY, self.capacity);
+        let pass = self.reads_samples(frame.pass(names.resolve, "filter/hpsf/resolve"), terms).constant(CAPACITY, self.capacity);
         let pass = pass.reads("keys", self.keys.current).touching(touched * self.key_bytes);
         let pass = pass.reads("cells", self.cells.current).touching(touched * CELL);
         pass.writes("mean", mean).writes("samples", samples).add()?;
@@ -275,7 +302,7 @@ impl Table {
         pass.reads("keys", self.keys.current).updates("owners", owners).add()?;
         let images = STATISTICS.map(|name| frame.image(name, vk::Format::R32_UINT).map(|image| (name, image)));
         let pass = reads_vertices(frame.pass("hpsf statistics", "filter/hpsf/statistics"), terms).constant(CAPACITY, self.capacity);
-        let pass = pass.reads("keys", self.keys.current).reads("owners", owners);
+        let pass = pass.reads("keys", self.keys.current).reads("owners", owners).reads("filter_layer", terms.vertex.layer);
         images.into_iter().try_fold(pass, |pass, image| image.map(|(name, image)| pass.writes(name, image)))?.add()
     }
 }
@@ -287,11 +314,6 @@ fn kept(frame: &mut FrameBuilder, name: &str, size: u64, swapped: bool) -> Resul
     }
     let buffer = frame.kept_buffer(name, size)?;
     Ok(History { previous: buffer, current: buffer })
-}
-
-fn reads_samples<'b, 'a>(pass: PassBuilder<'b, 'a>, terms: &Terms) -> PassBuilder<'b, 'a> {
-    let pass = pass.reads("diffuse_direct", terms.diffuse_direct).reads("diffuse_indirect", terms.diffuse_indirect);
-    reads_vertices(pass, terms)
 }
 
 fn reads_vertices<'b, 'a>(pass: PassBuilder<'b, 'a>, terms: &Terms) -> PassBuilder<'b, 'a> {

@@ -47,7 +47,7 @@ pub const INDIRECT: Layer = Layer {
     halfway: "smoothed_indirect_halfway",
 };
 
-const SPECULAR: Layer = Layer {
+pub const SPECULAR: Layer = Layer {
     passes: ["smooth specular 1", "smooth specular 2", "smooth specular 3", "smooth specular 4", "smooth specular 5"],
     smoothed: "smoothed_specular",
     halfway: "smoothed_specular_halfway",
@@ -72,9 +72,9 @@ pub fn add(frame: &mut FrameBuilder, vertex: &FilterVertex, noisy: Noisy, layer:
 }
 
 /// Both specular terms in one image.
-pub fn add_specular(frame: &mut FrameBuilder, terms: &Terms, passes: Passes) -> Result<ImageHandle, GpuError> {
+pub fn add_specular(frame: &mut FrameBuilder, terms: &Terms) -> Result<Noisy, GpuError> {
     let noisy = Noisy { mean: frame.color_image("specular")?, samples: frame.image("specular_samples", vk::Format::R32_UINT)? };
     let pass = frame.pass("smooth specular", "filter/smooth/specular").writes("specular", noisy.mean).writes("samples", noisy.samples);
     pass.reads("specular_direct", terms.specular_direct).reads("specular_indirect", terms.specular_indirect).add()?;
-    add(frame, &terms.vertex, noisy, &SPECULAR, passes)
+    Ok(noisy)
 }

@@ -3,7 +3,7 @@
 //! with the vertices behind the filter vertex (megakernel_vertices.comp).
 //!
 //! Takes the scene. Also returns `ray_count`: scattered rays in the low, shadow rays in the high 16 bits. No history. Writes 20 bytes per
-//! pixel, or 124 with terms (12 and 76 at fp16), 24 of them for the filter vertex; traces up to 2 (bounces + 1) + 1 rays per sample.
+//! pixel, or 128 with terms (12 and 80 at fp16), 28 of them for the filter vertex; traces up to 2 (bounces + 1) + 1 rays per sample.
 
 use super::terms::Terms;
 use super::tiles;

@@ -23,6 +23,8 @@ pub struct FilterVertex {
     /// Octahedral, 32 bits: shading normal, and the way the path arrives.
     pub normal: ImageHandle,
     pub incident: ImageHandle,
+    /// Of the lobes other than the diffuse one (shaders_glsl/lib/layer.glsl), where the specular terms may be filtered; else 0.
+    pub layer: ImageHandle,
 }
 
 impl Terms {
@@ -38,6 +40,7 @@ impl Terms {
                 position: frame.image("filter_position", vk::Format::R32G32B32A32_SFLOAT)?,
                 normal: frame.image("filter_normal", vk::Format::R32_UINT)?,
                 incident: frame.image("filter_incident", vk::Format::R32_UINT)?,
+                layer: frame.image("filter_layer", vk::Format::R32_UINT)?,
             },
         })
     }
@@ -45,7 +48,7 @@ impl Terms {
     /// By a kernel with paths/write_terms.glsl.
     pub(super) fn written_by<'b, 'a>(&self, pass: PassBuilder<'b, 'a>) -> PassBuilder<'b, 'a> {
         let pass = pass.writes("filter_position", self.vertex.position).writes("filter_normal", self.vertex.normal);
-        let pass = pass.writes("filter_incident", self.vertex.incident);
+        let pass = pass.writes("filter_incident", self.vertex.incident).writes("filter_layer", self.vertex.layer);
         self.named().into_iter().fold(pass, |pass, (name, image)| pass.writes(name, image))
     }
 

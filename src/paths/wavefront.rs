@@ -9,8 +9,8 @@
 //! visited once for each of its shadow rays. What is in a queue sizes the dispatches over it. All samples of a pixel but the first are these
 //! passes recorded again.
 //!
-//! Keeps 196 bytes per pixel, 284 with terms apart: 100 of path (ray 32, weights 32, footprint 16, hit 20), 64 of shadow ray and
-//! its light, 8 of queues, 24 of sums, or 72 and 40 of filter vertex. Deviations and why: one kernel shades all materials, for they differ by numbers, not by code;
+//! Keeps 196 bytes per pixel, 288 with terms apart: 100 of path (ray 32, weights 32, footprint 16, hit 20), 64 of shadow ray and
+//! its light, 8 of queues, 24 of sums, or 72 and 44 of filter vertex. Deviations and why: one kernel shades all materials, for they differ by numbers, not by code;
 //! a pixel's paths do not overlap, so that sums need no atomics and are the same in every run. Declared bytes are those of a frame in
 //! which no path ends early.
 
@@ -32,7 +32,7 @@ const FOOTPRINT: u64 = 16;
 const HIT: u64 = 20;
 const LIGHT: u64 = 32;
 const SUMS: u64 = 24;
-const VERTEX: u64 = 40;
+const VERTEX: u64 = 44;
 
 /// What the number of turns follows from.
 #[derive(Debug, Clone, Copy)]

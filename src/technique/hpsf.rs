@@ -41,10 +41,12 @@ pub(super) fn passes_of(
     let gbuffer = wanted.then(|| gbuffer::add(frame)).transpose()?;
     let part = if splits { Part::Direct } else { Part::Both };
     let table = Table::new(frame, Options { vertices, ..table_options(options, part) })?;
-    let indirect = splits.then(|| Table::new(frame, table_options(options, Part::Indirect))).transpose()?;
+    let mut further_table = |wanted: bool, part| wanted.then(|| Table::new(frame, table_options(options, part))).transpose();
+    let indirect = further_table(splits, Part::Indirect)?;
+    let glossy = further_table(options.parameters.number("hpsf.glossy") == 1.0, Part::Glossy)?;
     let paths = add_paths(frame, &table)?;
     let diffuse = filter_diffuse(frame, &table, indirect.as_ref(), &paths, options)?;
-    let specular = filter_specular(frame, &paths.terms, options)?;
+    let specular = filter_specular(frame, glossy.as_ref(), &paths.terms, options)?;
     let radiance = composite::add_parts(frame, &paths.terms, diffuse, specular)?;
     match gbuffer {
         Some(gbuffer) if over_frames => temporal::add(frame, &gbuffer, radiance),
@@ -83,12 +85,19 @@ fn filter_diffuse(
 }
 
 /// What other lobes reflect, likewise.
-fn filter_specular(frame: &mut FrameBuilder, terms: &Terms, options: PassOptions) -> Result<[ImageHandle; 2], GpuError> {
+fn filter_specular(
+    frame: &mut FrameBuilder,
+    glossy: Option<&Table>,
+    terms: &Terms,
+    options: PassOptions,
+) -> Result<[ImageHandle; 2], GpuError> {
     let passes = smoothing(options, "hpsf.smooth_specular");
-    if passes.count == 0 {
-        return Ok([terms.specular_direct, terms.specular_indirect]);
-    }
-    Ok([smooth::add_specular(frame, terms, passes)?; 2])
+    let noisy = match glossy {
+        Some(table) => table.filter(frame, &Paths { terms: *terms, behind: None, chains: None, retraced: None })?,
+        None if passes.count == 0 => return Ok([terms.specular_direct, terms.specular_indirect]),
+        None => smooth::add_specular(frame, terms)?,
+    };
+    Ok([smooth::add(frame, &terms.vertex, noisy, &smooth::SPECULAR, passes)?; 2])
 }
 
 fn smoothing(options: PassOptions, key: &str) -> Passes {
@@ -106,8 +115,8 @@ fn table_options(options: PassOptions, part: Part) -> Options {
         swapped: number("hpsf.table") == 1.0,
         ordered: number("hpsf.insertion") == 1.0,
         evicts: number("hpsf.eviction") == 1.0,
-        exact_keys: number("hpsf.keys") == 1.0,
+        exact_keys: number("hpsf.keys") == 1.0 && part != Part::Glossy,
         float_sums: number("hpsf.sums") == 1.0,
-        statistics: part != Part::Indirect && options.wants(&hpsf::STATISTICS),
+        statistics: !matches!(part, Part::Indirect | Part::Glossy) && options.wants(&hpsf::STATISTICS),
     }
 }

@@ -73,21 +73,22 @@ fn a_move_of_the_origin_changes_no_key() {
 
 const HASHES: &str = r#"
 #include "lib/hash_key.glsl"
-struct In { ivec3 cell; int level; uint normal; };
+struct In { ivec3 cell; int level; uint normal; uint layer; };
 struct Out { uint index; uint fingerprint; uint without_normal; };
 void kernel(uint i) {
-    CellKey key = CellKey(inputs[i].cell, inputs[i].level, inputs[i].normal);
+    CellKey key = CellKey(inputs[i].cell, inputs[i].level, inputs[i].normal, inputs[i].layer);
     outputs[i] = Out(hash_index(key, true), hash_fingerprint(key), hash_index(key, false));
 }
 "#;
 
-/// 64,000 neighbouring keys around zero. By chance two of them share a fingerprint with probability 0.48, ten pairs with 10^-9; 256 bins
+/// 64,000 neighbouring keys around zero, half of them of a glossy layer. By chance two of them share a fingerprint with probability 0.48, ten pairs with 10^-9; 256 bins
 /// of an even index exceed a chi-square of 400 with 10^-8.
 #[test]
-fn hashes_differ_across_negative_coordinates_levels_and_normals() {
+fn hashes_differ_across_negative_coordinates_levels_normals_and_layers() {
     let mut keys = Vec::new();
-    for (x, y, z) in (-10..10).flat_map(|x| (-10..10).flat_map(move |y| (-10..10).map(move |z| (x, y, z)))) {
-        keys.extend([-5, 2].into_iter().flat_map(|level| [0, 1, 2, 255].map(|normal| [x, y, z, level, normal])));
+    for (x, y, z) in (-10..10).flat_map(|x| (-10..10).flat_map(move |y| (-5..5).map(move |z| (x, y, z)))) {
+        let layers = [0, 1 << 8].into_iter().flat_map(|layer| [-5, 2].map(|level| (level, layer)));
+        keys.extend(layers.flat_map(|(level, layer)| [0, 1, 2, 255].map(|normal| [x, y, z, level, normal, layer])));
     }
     let hashes: Vec<[u32; 3]> = common::run_kernel(&common::gpu(), HASHES, &keys);
     let fingerprints: HashSet<u32> = hashes.iter().map(|hash| hash[1]).collect();
@@ -176,7 +177,7 @@ const EXACT: &str = r#"
 struct In { ivec3 cell; int level; uint normal; };
 struct Out { uvec2 words; };
 void kernel(uint i) {
-    outputs[i] = Out(exact_key(CellKey(inputs[i].cell, inputs[i].level, inputs[i].normal)));
+    outputs[i] = Out(exact_key(CellKey(inputs[i].cell, inputs[i].level, inputs[i].normal, 0u)));
 }
 "#;
 
@@ -203,19 +204,19 @@ fn exact_keys_hold_all_of_a_key() {
 const PROBES: usize = 8;
 
 /// A floor of cells with a wall, as scenes have them, at two levels and with four normals each.
-fn keys(count: usize) -> Vec<[i32; 5]> {
+fn keys(count: usize) -> Vec<[i32; 6]> {
     let mut rng = Pcg32::seed_from_u64(11);
     let mut key = |i: usize| {
         let [u, v] = [0; 2].map(|_| rng.random_range(-500..500));
         let cell = if i.is_multiple_of(3) { [u, v, -3] } else { [u, 0, v] };
-        [cell[0], cell[1], cell[2], -4 + (i % 2) as i32, rng.random_range(0..4)]
+        [cell[0], cell[1], cell[2], -4 + (i % 2) as i32, rng.random_range(0..4), 0]
     };
     (0..count).map(&mut key).collect()
 }
 
 /// Inserts keys one by one as filter/hpsf/collect.glsl, remembering the whole key of each slot; counts those that are taken for another.
-fn collisions(keys: &[[i32; 5]], hashes: &[[u32; 3]], slots: usize, fingerprint_bits: u32) -> usize {
-    let mut table: HashMap<usize, (u32, [i32; 5])> = HashMap::new();
+fn collisions(keys: &[[i32; 6]], hashes: &[[u32; 3]], slots: usize, fingerprint_bits: u32) -> usize {
+    let mut table: HashMap<usize, (u32, [i32; 6])> = HashMap::new();
     let mut taken_for_another = 0;
     for (key, [index, fingerprint, _]) in keys.iter().zip(hashes) {
         let home = ((u64::from(*index) * slots as u64) >> 32) as usize;

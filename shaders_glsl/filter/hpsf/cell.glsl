@@ -13,6 +13,7 @@
 #include "filter/footprint.glsl"
 #include "lib/frame.glsl"
 #include "lib/hash_key.glsl"
+#include "lib/layer.glsl"
 #include "lib/sampler.glsl"
 #include "paths/primary.glsl"
 
@@ -28,6 +29,8 @@ struct FilterPoint {
     float distance;
     /// Where it grows: its gradient over the position.
     vec3 away;
+    /// Of the lobes that the radiance is of (lib/layer.glsl); 0: the diffuse one.
+    uint layer;
 };
 
 /// A point with what its keys depend on.
@@ -43,7 +46,7 @@ struct CellPoint {
 FilterPoint filter_point(uvec2 pixel, vec4 position, uint normal, uint incident) {
     float view_cosine = dot(primary_ray(pixel, frame.jitter).direction, frame.camera.forward);
     vec3 arrives = unpack_normal(incident);
-    return FilterPoint(position.xyz, unpack_normal(normal), arrives, position.w, arrives * view_cosine);
+    return FilterPoint(position.xyz, unpack_normal(normal), arrives, position.w, arrives * view_cosine, 0u);
 }
 
 /// Numbers in [0, 1)^4 of a pixel's jitter `index` in this frame: for the position, and for the normal.
@@ -75,8 +78,14 @@ float level_number(vec4 numbers) {
     return fract(numbers.x * 4096.0);
 }
 
+/// Levels that a glossy layer's cells are finer.
+int finer_levels(uint layer) {
+    return layer == 0u ? 0 : int(0.5 - parameters.hpsf_glossy_finer * log2(roughness_of(layer)));
+}
+
 /// The key of a vertex, jittered by numbers in [0, 1)^4, `coarser` levels above the one of its distance.
 CellKey key_of(FilterPoint point, vec4 numbers, int coarser) {
+    coarser -= finer_levels(point.layer);
     Basis basis = basis_around(point.normal);
     float number = level_number(numbers);
     int level = level_at(point.distance, number) + coarser;
@@ -86,7 +95,8 @@ CellKey key_of(FilterPoint point, vec4 numbers, int coarser) {
     vec2 tilt = (2.0 * numbers.zw - 1.0) * (parameters.hpsf_normal_jitter * exp2(-0.5 * float(parameters.hpsf_normal_bits)));
     vec3 normal = normalize(point.normal + tilt.x * basis.tangent + tilt.y * basis.bitangent);
     ivec3 cell = cell_of(point.position + offset, frame.origin_steps, frame.log2_origin_step, level_there);
-    return CellKey(cell, level_there, quantise_normal(normal, parameters.hpsf_normal_bits));
+    uint incident = point.layer == 0u ? 0u : quantise_normal(point.incident, parameters.hpsf_incident_bits);
+    return CellKey(cell, level_there, quantise_normal(normal, parameters.hpsf_normal_bits), point.layer | incident);
 }
 
 #endif

@@ -51,7 +51,7 @@ void main() {
     }
     float view_cosine = dot(camera_ray(frame.previous_camera, pixel, frame.previous_jitter).direction, frame.previous_camera.forward);
     vec3 arrives = unpack_normal(path.incident);
-    FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), arrives, path.now.distance, arrives * view_cosine);
+    FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), arrives, path.now.distance, arrives * view_cosine, 0u);
     float dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
     for (uint level = 0u; level < parameters.hpsf_levels + FURTHER_LEVELS; level++) {
         add_path(key_of(point, numbers, int(level)), path.now.radiance, before.radiance, dither);

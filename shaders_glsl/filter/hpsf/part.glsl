@@ -1,22 +1,34 @@
-// Which part of the light behind the filter vertex a table is about (hpsf.split). The kernel has images `diffuse_direct` and `diffuse_indirect`.
+// The part of the light behind the filter vertex that a table is about. The kernel has images `direct` and `indirect`, of the diffuse lobe, or
+// of the others where that part is glossy.
+//
+// Glossy lobes (hpsf.glossy; Binder, section 3.1.2): keys also hold the material, its roughness and the direction that the path arrives from
+// (lib/layer.glsl), and cells are the narrower the smoother the surface is (chapter 4 asks for finer quantisation there). What is averaged is
+// what the lobes reflect, their colour included, which nothing divides out; so the lobes are left alone where that would blur what
+// is not noise: where a texture gives the colour; where the path has passed anything, whose throughput the terms hold; where one
+// of them has a single direction. A metal that qualifies is a filter vertex without a diffuse sample.
+//
+// Deviations and why: layers have a table each instead of sharing one, since each is looked up when its own sums are complete; the layer is part of
+// the key all the same. Exact keys have no bits left for it: fingerprints tell glossy ones apart.
+//
+// Measured on material-glossy (128x72, three seeds, against 1024 samples): after 16 frames FLIP 0.150, relMSE 0.109, without 0.178 and 0.217; of
+// that, 0.172 and 0.179 are there without the metals. After one frame 0.259 and 0.51, without 0.263 and 0.42 (0.223 and 0.231 without the
+// worst 0.1 % of the pixels): cells of a few samples spread a firefly, and what a metal shows of diffuse cells is as noisy as the
+// path found it. With a still camera hpsf.incident_bits of 0, 6 and 8 hardly differ; hpsf.glossy_finer of 0, 1, 2, without metals: 0.184, 0.184 and
+// 0.179.
 #ifndef FILTER_HPSF_PART_GLSL
 #define FILTER_HPSF_PART_GLSL
 
-const uint PART_DIRECT = 1u;
-const uint PART_INDIRECT = 2u;
-
-/// 0: all of it.
-layout(constant_id = 231) const uint PART = 0;
+#include "filter/hpsf/table.glsl"
 
 /// A pixel's own sample; w is 0 where it is not a number, in whatever part: a path that meets infinite radiance counts for neither.
 vec4 own_sample(ivec2 pixel) {
-    vec4 direct = imageLoad(diffuse_direct, pixel);
-    vec4 indirect = imageLoad(diffuse_indirect, pixel);
-    vec3 part = direct.rgb + indirect.rgb;
-    if (PART != 0u) {
-        part = PART == PART_DIRECT ? direct.rgb : indirect.rgb;
+    vec4 a = imageLoad(direct, pixel);
+    vec4 b = imageLoad(indirect, pixel);
+    vec3 part = a.rgb + b.rgb;
+    if (PART == PART_DIRECT || PART == PART_INDIRECT) {
+        part = PART == PART_DIRECT ? a.rgb : b.rgb;
     }
-    return vec4(part, direct.w * indirect.w);
+    return vec4(part, a.w * b.w);
 }
 
 #endif

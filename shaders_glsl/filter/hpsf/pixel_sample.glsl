@@ -1,8 +1,8 @@
 // Each pixel's sample: what its filter vertex receives.
 #include "filter/hpsf/pixel_point.glsl"
 
-layout(set = 1, binding = 13, COLOR_FORMAT) readonly uniform image2D diffuse_direct;
-layout(set = 1, binding = 14, COLOR_FORMAT) readonly uniform image2D diffuse_indirect;
+layout(set = 1, binding = 13, COLOR_FORMAT) readonly uniform image2D direct;
+layout(set = 1, binding = 14, COLOR_FORMAT) readonly uniform image2D indirect;
 
 #include "filter/hpsf/part.glsl"
 

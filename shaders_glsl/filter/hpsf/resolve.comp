@@ -11,11 +11,12 @@
 
 layout(local_size_x = 8, local_size_y = 4) in;
 
-layout(set = 1, binding = 0, COLOR_FORMAT) readonly uniform image2D diffuse_direct;
-layout(set = 1, binding = 1, COLOR_FORMAT) readonly uniform image2D diffuse_indirect;
+layout(set = 1, binding = 0, COLOR_FORMAT) readonly uniform image2D direct;
+layout(set = 1, binding = 1, COLOR_FORMAT) readonly uniform image2D indirect;
 layout(set = 1, binding = 2, rgba32f) readonly uniform image2D filter_position;
 layout(set = 1, binding = 3, r32ui) readonly uniform uimage2D filter_normal;
 layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D filter_incident;
+layout(set = 1, binding = 9, r32ui) readonly uniform uimage2D filter_layer;
 layout(set = 1, binding = 5, scalar) readonly buffer Keys { uint at[]; } keys;
 layout(set = 1, binding = 6, scalar) readonly buffer Cells { uvec4 at[]; } cells;
 /// w: variance of its luminance; below 0 where nothing is known, not even by a sample of the pixel's own.
@@ -49,7 +50,7 @@ Cell with_similar(Cell cell, CellKey key, vec3 normal) {
 /// With the eight cells around it in the tangent plane.
 Cell with_neighbours(Cell cell, FilterPoint point, vec4 numbers, int coarser) {
     Basis basis = basis_around(point.normal);
-    float size = power_of_two(level_at(point.distance, level_number(numbers)) + coarser);
+    float size = power_of_two(level_at(point.distance, level_number(numbers)) + coarser - finer_levels(point.layer));
     vec3 centre = point.position;
     for (uint i = 0u; i < 9u; i++) {
         if (i != 4u) {
@@ -135,6 +136,12 @@ void main() {
     }
     FilterPoint point = filter_point(uvec2(pixel), position, imageLoad(filter_normal, pixel).x, imageLoad(filter_incident, pixel).x);
     vec4 own = own_sample(pixel);
+    point.layer = PART == PART_GLOSSY ? imageLoad(filter_layer, pixel).x : 0u;
+    if (PART == PART_GLOSSY && point.layer == 0u) {
+        imageStore(mean, pixel, storable(vec4(own.rgb, variance_of_mean(own.rgb, own.rgb, 0u))));
+        imageStore(samples, pixel, uvec4(1u));
+        return;
+    }
     vec3 sum = vec3(0.0);
     uint found = 0u;
     uint known = 0u;

@@ -21,6 +21,7 @@ layout(set = 1, binding = 7, r32ui) writeonly uniform uimage2D hpsf_collided;
 /// Slots whose number is the pixel's, modulo the number of pixels, and those taken among them: their sums are the table's.
 layout(set = 1, binding = 8, r32ui) writeonly uniform uimage2D hpsf_slots;
 layout(set = 1, binding = 9, r32ui) writeonly uniform uimage2D hpsf_taken;
+layout(set = 1, binding = 10, r32ui) readonly uniform uimage2D filter_layer;
 
 uint key_word(uint at) {
     return keys.at[at];
@@ -48,7 +49,8 @@ void main() {
     uint probed = 0u;
     uint failed = 0u;
     uint collided = 0u;
-    uint levels = imageLoad(filter_position, at).w > 0.0 ? parameters.hpsf_levels : 0u;
+    bool has_sample = imageLoad(filter_position, at).w > 0.0 && has_diffuse_lobe(imageLoad(filter_layer, at).x);
+    uint levels = has_sample ? parameters.hpsf_levels : 0u;
     for (uint level = 0u; level < levels; level++) {
         CellKey key = key_at(pixel, level);
         uint distance = distance_to(key);

@@ -9,6 +9,12 @@
 #include "shared/parameters.glsl"
 
 layout(constant_id = 221) const uint CAPACITY = 1;
+/// Which part of the light behind the filter vertex the table is about (hpsf.split, hpsf.glossy).
+layout(constant_id = 231) const uint PART = 0;
+
+const uint PART_DIRECT = 1u;
+const uint PART_INDIRECT = 2u;
+const uint PART_GLOSSY = 3u;
 
 const uint KEYS_FINGERPRINT = 0u;
 const uint KEYS_EXACT = 1u;
@@ -24,7 +30,7 @@ const uint TABLE_SWAPPED = 1u;
 
 /// Slots are given in a fixed order (filter/hpsf/ordered.glsl), in which words of a slot differ by more than the key.
 const bool ORDERED = HPSF_INSERTION == 1u || HPSF_EVICTION == 1u;
-const bool EXACT = HPSF_KEYS == KEYS_EXACT && !ORDERED;
+const bool EXACT = HPSF_KEYS == KEYS_EXACT && !ORDERED && PART != PART_GLOSSY;
 /// Of a slot in the buffer of keys. Zero: an empty slot.
 const uint KEY_WORDS = EXACT ? 2u : 1u;
 /// Bits of a slot's first word that tell its key.

@@ -23,7 +23,7 @@ void clear_terms(uint slot) {
 #ifdef SEPARATE_TERMS
     direct.at[slot] = StoredLobes(vec3(0.0), vec3(0.0));
     indirect.at[slot] = StoredLobes(vec3(0.0), vec3(0.0));
-    vertices.at[slot] = StoredVertex(vec3(0.0), 0.0, vec3(0.0), vec3(0.0));
+    vertices.at[slot] = StoredVertex(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), 0u);
 #endif
 }
 

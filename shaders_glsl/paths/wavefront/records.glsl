@@ -68,6 +68,7 @@ struct StoredVertex {
     float travelled;
     vec3 normal;
     vec3 incident;
+    uint layer;
 };
 
 uvec2 pixel_of_slot(uint slot) {

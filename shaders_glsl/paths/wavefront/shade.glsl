@@ -32,7 +32,7 @@ void store_filter_vertex(uint slot, Terms terms) {
     front.at[slot].attenuation = terms.attenuation;
 #ifdef SEPARATE_TERMS
     FilterVertex vertex = terms.vertex;
-    vertices.at[slot] = StoredVertex(vertex.position, vertex.travelled, vertex.normal, vertex.incident);
+    vertices.at[slot] = StoredVertex(vertex.position, vertex.travelled, vertex.normal, vertex.incident, vertex.layer);
 #endif
 }
 

@@ -16,6 +16,8 @@ layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D filter_position;
 /// Shading normal and the way the path arrives (lib/packing.glsl).
 layout(set = 1, binding = 7, r32ui) writeonly uniform uimage2D filter_normal;
 layout(set = 1, binding = 8, r32ui) writeonly uniform uimage2D filter_incident;
+/// Where the specular terms may be filtered (lib/layer.glsl); else 0.
+layout(set = 1, binding = 13, r32ui) writeonly uniform uimage2D filter_layer;
 layout(set = 1, binding = 9, scalar) readonly buffer Front { StoredFront at[]; } front;
 layout(set = 1, binding = 10, scalar) readonly buffer Direct { StoredLobes at[]; } direct;
 layout(set = 1, binding = 11, scalar) readonly buffer Indirect { StoredLobes at[]; } indirect;
@@ -33,6 +35,6 @@ void main() {
     StoredLobes d = direct.at[slot];
     StoredLobes i = indirect.at[slot];
     StoredFront f = front.at[slot];
-    FilterVertex vertex = FilterVertex(v.position, v.normal, v.incident, v.travelled);
+    FilterVertex vertex = FilterVertex(v.position, v.normal, v.incident, v.travelled, v.layer);
     write_terms(pixel, Terms(f.before, f.attenuation, d.diffuse, i.diffuse, d.specular, i.specular, vertex));
 }
