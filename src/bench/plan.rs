@@ -226,6 +226,8 @@ mod tests {
         }
         let quick = plan(&Suite::load(None).unwrap().quick()).unwrap();
         assert!(!quick.is_empty() && quick.len() < points.len() / 4);
+        let papers = plan(&Suite::load(Some(std::path::Path::new("assets/suites/papers.toml"))).unwrap()).unwrap();
+        assert!(papers.iter().any(|planned| planned.point.technique == "anhpsf"));
     }
 
     #[test]
