@@ -5,6 +5,10 @@
 // Frame k of the N that a point has been seen in weighs 2k / (N (N + 1)): later ones are better where cells keep what they know, and an even
 // mean would carry the first frames' error twice as long. Up to temporal.frames a still picture converges; then it is a moving average.
 //
+// Where lights or objects move, what a point looked like is no longer what it looks like: its history is clipped to what surrounds it now
+// (temporal.clamp) and short (temporal.moving), shortest along edges that move, or they leave a trail, of lamps above all. Where nothing but
+// the camera moves, history is right, and clipping would only take away light that few samples find.
+//
 // Deviations and why: history counts where its depth is in the range of the depths around the pixel now, not where it is that of the
 // pixel's one sample: at an edge the offset decides which surface the sample meets.
 #include "lib/storage.glsl"
@@ -31,12 +35,19 @@ const float TOLERANCE = 0.05;
 /// Pixels; motion below it is rounding, and would blur a still picture.
 const float STILL = 1e-2;
 
+/// Pixels per frame by which neighbours move apart where one passes in front of the other, and frames that count there.
+const float APART = 0.1;
+const float EDGE_FRAMES = 2.0;
+
 /// What is seen around a pixel in this frame.
 struct Surroundings {
     vec3 mean;
     vec3 deviation;
     float nearest;
     float farthest;
+    /// Least and most motion, pixels.
+    vec2 slowest;
+    vec2 fastest;
 };
 
 float depth_at(ivec2 pixel) {
@@ -49,15 +60,18 @@ Surroundings look_around(ivec2 pixel) {
     ivec2 high = min(pixel + 1, ivec2(frame.extent) - 1);
     vec3 sum = vec3(0.0);
     vec3 squares = vec3(0.0);
-    Surroundings around = Surroundings(vec3(0.0), vec3(0.0), MISS, -MISS);
+    Surroundings around = Surroundings(vec3(0.0), vec3(0.0), MISS, -MISS, vec2(MISS), vec2(-MISS));
     for (int y = low.y; y <= high.y; y++) {
         for (int x = low.x; x <= high.x; x++) {
             vec3 value = imageLoad(radiance, ivec2(x, y)).rgb;
             float depth = depth_at(ivec2(x, y));
+            vec2 moves = imageLoad(motion, ivec2(x, y)).xy;
             sum += value;
             squares += value * value;
             around.nearest = min(around.nearest, depth);
             around.farthest = max(around.farthest, depth);
+            around.slowest = min(around.slowest, moves);
+            around.fastest = max(around.fastest, moves);
         }
     }
     ivec2 size = high - low + 1;
@@ -90,6 +104,15 @@ vec4 history_at(vec2 place, float nearest, float farthest) {
     return weights > 0.0 ? sum / weights : vec4(0.0);
 }
 
+/// Frames that count at most.
+float most_frames(Surroundings around) {
+    if (!EFFECT_OBJECT_ANIMATION) {
+        return parameters.temporal_frames;
+    }
+    vec2 apart = around.fastest - around.slowest;
+    return dot(apart, apart) > APART * APART ? EDGE_FRAMES : parameters.temporal_moving;
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(uvec2(pixel), frame.extent))) {
@@ -103,11 +126,11 @@ void main() {
     if (moved.w > 0.0) {
         before = history_at(vec2(pixel) + step, around.nearest + moved.z, around.farthest + moved.z);
     }
-    if (parameters.temporal_clamp > 0.0) {
+    if (EFFECT_OBJECT_ANIMATION && parameters.temporal_clamp > 0.0) {
         vec3 allowed = parameters.temporal_clamp * around.deviation;
         before.rgb = clamp(before.rgb, around.mean - allowed, around.mean + allowed);
     }
-    float count = min(before.w, parameters.temporal_frames - 1.0) + 1.0;
+    float count = min(before.w, most_frames(around) - 1.0) + 1.0;
     vec3 mean = before.w > 0.0 ? mix(before.rgb, now, 2.0 / (count + 1.0)) : now;
     imageStore(temporal, pixel, storable(vec4(mean, before.w > 0.0 ? count : 1.0)));
     imageStore(temporal_depth, pixel, vec4(depth_at(pixel)));

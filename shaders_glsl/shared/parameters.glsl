@@ -253,8 +253,11 @@ struct Parameters {
     /// Frames that count at most where hpsf.temporal is on. Fewer follow changes sooner, and leave more noise.
     float temporal_frames;
     //@ temporal.clamp 0 0..100
-    /// History is kept within so many standard deviations of what surrounds the pixel now; 0: not. Less is less lag, and loses light that few samples find.
+    /// Where lights or objects move, history is kept within so many standard deviations of what surrounds the pixel now; 0: not. Less is less lag, and loses light that few samples find.
     float temporal_clamp;
+    //@ temporal.moving 4 1..1000
+    /// In place of temporal.frames where lights or objects move. Fewer: less lag, less antialiasing.
+    float temporal_moving;
 };
 
 #endif

@@ -8,6 +8,7 @@ use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
 use crate::paths::gbuffer;
 use crate::paths::terms::Terms;
+use crate::scene::effects::Effect;
 
 /// The value of hpsf.time.
 const HYBRID: f64 = 3.0;
@@ -54,9 +55,11 @@ pub(super) fn passes_of(
     }
 }
 
-/// Paths; some of the last frame's, too, where cells want to know of changes.
+/// Paths; some of the last frame's, too, where cells want to know of changes and something moves that could make one. Where nothing does,
+/// they would find exactly none.
 fn add_paths(frame: &mut FrameBuilder, options: PassOptions) -> Result<Paths, GpuError> {
-    if options.parameters.number("hpsf.time") != HYBRID {
+    let retraces = options.parameters.number("hpsf.time") == HYBRID && options.effects.contains(Effect::ObjectAnimation);
+    if !retraces {
         return Ok(Paths { terms: options.kernel().add_with_terms(frame)?, behind: None, chains: None, retraced: None });
     }
     let (terms, retraced) = options.kernel().add_with_retraced(frame, options.parameters.number("hpsf.retrace") as u32)?;

@@ -17,6 +17,9 @@ pub(super) const TECHNIQUE: Technique = Technique {
         ("hpsf.levels", "1"),
         ("hpsf.width", "3"),
         ("hpsf.jitter", "0.4"),
+        ("hpsf.time", "hybrid"),
+        ("hpsf.adapt", "2"),
+        ("temporal.clamp", "1"),
     ],
     ..hpsf::TECHNIQUE
 };

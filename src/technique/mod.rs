@@ -24,6 +24,7 @@ pub use timings::{BuildTimes, MemoryUse, PassTime, RayCounts, Timings};
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
 use crate::paths::{Kernel, WavefrontOptions};
+use crate::scene::effects::EffectSet;
 
 /// One way from samples to a picture.
 pub struct Technique {
@@ -60,6 +61,8 @@ pub(crate) struct PassOptions<'a> {
     pub outputs: &'a [String],
     /// Those that the host needs itself: sizes, and which passes there are.
     pub parameters: &'a Parameters,
+    /// What the scene calls for.
+    pub effects: &'a EffectSet,
 }
 
 impl PassOptions<'_> {

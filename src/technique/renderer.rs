@@ -54,7 +54,7 @@ impl Renderer {
         let globals = Globals::new(gpu, &info)?;
         let constants = [prepared.effects.specialization(), settings.parameters.constants(), prepared.structure.constants()].concat();
         let mut frame = FrameBuilder::new(gpu, &globals, prepared.entry.stem, settings.parameters.precision(), constants, settings.extent);
-        let options = PassOptions { outputs: &settings.outputs, parameters: &settings.parameters };
+        let options = PassOptions { outputs: &settings.outputs, parameters: &settings.parameters, effects: &prepared.effects };
         let picture = (technique.passes)(&mut frame, options)?;
         let graph = frame.build();
         check_outputs(&settings, &graph)?;

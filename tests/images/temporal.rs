@@ -32,3 +32,16 @@ fn g_buffer_and_terms_share_the_offset() {
     let centres = render_frames(&gpu, &builtin("cornell"), &settings, "hpsf", 3);
     assert!(agree(&output(&centres, "position")) < seen / 2, "the third frame's offset is not zero");
 }
+
+/// Of all that a picture of several frames can remember, the lamp is the brightest.
+#[test]
+fn a_moving_lamp_leaves_no_trail() {
+    let gpu = common::gpu();
+    let scene = builtin("cornell-light");
+    let bright = |technique: &str| {
+        let renderer = render_frames(&gpu, &scene, &settings(96, 54), technique, 16);
+        renderer.picture().unwrap().pixels.iter().filter(|pixel| pixel[0] > 1.0).count()
+    };
+    let [lamp, remembered] = ["unfiltered", "hpsf+"].map(bright);
+    assert!(lamp > 10 && remembered < 2 * lamp, "{remembered} of {lamp}");
+}

@@ -27,7 +27,9 @@ fn a_still_scene_is_integrated_to_the_bit() {
     for (technique, name) in [("hpsf", "material"), ("hpsf+", "cornell")] {
         let scene = builtin(name);
         let [integrate, hybrid] = ["integrate", "hybrid"].map(|time| {
-            let settings = with(&[("hpsf.time", time), ("hpsf.cells", "4"), ("hpsf.retrace", "2")]);
+            let mut settings = with(&[("hpsf.time", time), ("hpsf.cells", "4"), ("hpsf.retrace", "2")]);
+            // Or no path would be retraced, because nothing moves.
+            settings.all_effects = true;
             render_frames(&gpu, &scene, &settings, technique, 4)
         });
         assert_eq!(bits(&integrate.picture().unwrap()), bits(&hybrid.picture().unwrap()), "{technique}, {name}");
@@ -41,7 +43,10 @@ fn a_moving_camera_makes_nothing_forget() {
     let mut scene = builtin("cornell");
     let camera = scene.cameras[0].node;
     scene.animation = moving(camera, vec![DVec3::new(0.278, 0.273, -0.8), DVec3::new(0.378, 0.273, -0.7)], Interpolation::Linear);
-    let renderer = render_frames(&gpu, &scene, &with(&[("hpsf.time", "hybrid"), ("hpsf.retrace", "2")]), "hpsf", 4);
+    let mut settings = with(&[("hpsf.time", "hybrid"), ("hpsf.retrace", "2")]);
+    // Or no path would be retraced, because no object moves.
+    settings.all_effects = true;
+    let renderer = render_frames(&gpu, &scene, &settings, "hpsf", 4);
     assert!(output(&renderer, "retraced_ray_count").pixels.iter().any(|pixel| pixel[0] > 0.0));
     assert!(output(&renderer, "hpsf_change").pixels.iter().all(|pixel| pixel[0] == 0.0));
 }
