@@ -16,6 +16,8 @@ pub(super) const TECHNIQUE: Technique = Technique {
         ("hpsf.lookups", "0"),
         ("hpsf.levels", "1"),
         ("hpsf.width", "3"),
+        // Fine cells are many: with room for them all, which pixel fails to get one is left to chance no more.
+        ("hpsf.cells", "2"),
         ("hpsf.jitter", "0.4"),
         ("hpsf.time", "hybrid"),
         ("hpsf.adapt", "2"),
