@@ -35,7 +35,9 @@ impl Reference<'_> {
         let over_channels = |pixel: &[f32; 3], of: fn(f64) -> f64| pixel.iter().map(|&value| of(f64::from(value))).sum::<f64>() / 3.0;
         let radiance = self.mean.pixels.iter().map(|pixel| over_channels(pixel, |radiance| radiance)).sum::<f64>() / count;
         let variances = self.variance.iter().flat_map(|variance| &variance.pixels);
-        let variance = variances.map(|pixel| over_channels(pixel, f64::sqrt).powi(2)).sum::<f64>() / count.powi(2);
+        // Rounding may leave a variance of nearly 0 below it.
+        let deviation = |variance: f64| variance.max(0.0).sqrt();
+        let variance = variances.map(|pixel| over_channels(pixel, deviation).powi(2)).sum::<f64>() / count.powi(2);
         Estimate::exact(radiance).widened(variance.sqrt())
     }
 }

@@ -8,11 +8,13 @@ pub(super) const TECHNIQUE: Technique = Technique {
     defaults: &[
         ("paths.scramble", "tile"),
         ("frame.jitter", "on"),
+        // Frames at several offsets are sharper than one: half a level finer, as antialiasing over frames allows.
+        ("textures.lod_bias", "-0.5"),
         ("hpsf.temporal", "on"),
         ("hpsf.split", "on"),
         ("hpsf.smooth", "4"),
         ("hpsf.smooth_indirect", "5"),
-        ("hpsf.smooth_specular", "5"),
+        ("hpsf.smooth_specular", "3"),
         ("hpsf.lookups", "0"),
         ("hpsf.levels", "1"),
         ("hpsf.width", "3"),
