@@ -9,11 +9,10 @@
 use super::figure::{Better, FigureKind, Group};
 use super::record::Figure;
 use crate::metrics::estimate::NORMAL_QUANTILE;
-use crate::metrics::statistics::{BatchMeans, quantile, two_sided_p};
+use crate::metrics::statistics::{BatchMeans, quantile, two_sided_p, two_sided_reach};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// How two values of a figure are set against each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -109,10 +108,7 @@ impl Change {
         let reach = match self.spread {
             Spread::Exact => 0.0,
             Spread::Unknown => return None,
-            Spread::Estimated { standard_error, degrees_of_freedom } => {
-                let student = StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?;
-                standard_error * student.inverse_cdf(0.5 + confidence / 2.0)
-            }
+            Spread::Estimated { standard_error, degrees_of_freedom } => standard_error * two_sided_reach(confidence, degrees_of_freedom),
         };
         Some([-reach, reach].map(|reach| match self.scale {
             Scale::Ratio => self.estimate() * reach.exp(),
@@ -285,6 +281,8 @@ mod tests {
         let change = Change::of(kind, &figure(1.0, 0.03), &figure(1.0, 0.04), true).unwrap();
         let Spread::Estimated { standard_error, degrees_of_freedom } = change.spread else { panic!("{change:?}") };
         assert!((standard_error - 0.05).abs() < 1e-12 && degrees_of_freedom.is_infinite());
+        let [low, high] = change.interval(0.95).unwrap();
+        assert!((low - (-NORMAL_QUANTILE * 0.05).exp()).abs() < 1e-9 && (high - (NORMAL_QUANTILE * 0.05).exp()).abs() < 1e-9);
     }
 
     #[test]

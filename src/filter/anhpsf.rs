@@ -9,18 +9,13 @@
 use super::hpsf::Table;
 use crate::frame::FrameBuilder;
 use crate::gpu::{GpuError, vk};
-use crate::paths::tiles;
 use crate::paths::vertices::{ListOptions, PathEnds, PathVertices};
+use crate::paths::{FOOTPRINT, RAY, WEIGHTS, tiles};
 
-/// Specialization constants: last vertex of this frame's lists, and how chains end (paths/vertices.glsl).
+/// Specialization constant: last vertex of this frame's lists.
 const LIST_END: u32 = 207;
-const MOST_VERTICES: u32 = 204;
-const LAST_IS_READ: u32 = 205;
 
-/// Bytes (paths/wavefront/records.glsl, chain.glsl).
-const RAY: u64 = 32;
-const WEIGHTS: u64 = 32;
-const FOOTPRINT: u64 = 16;
+/// Bytes (chain.glsl).
 const CONTINUED: u64 = 28;
 const VERTEX_PART: u64 = 16;
 
@@ -47,7 +42,8 @@ pub fn add(frame: &mut FrameBuilder, table: &Table, lists: &PathVertices, ends: 
     let state = state.map(|(name, bytes)| frame.kept_buffer(&format!("{name} of chains"), bytes * pixels).map(|buffer| (name, buffer)));
     let groups = tiles(frame.extent());
     let pass = frame.pass("anhpsf continue", "filter/anhpsf/continue").groups(groups).updates("ray_count", ends.ray_count);
-    let pass = pass.constant(LIST_END, lists.options.most - 1).constant(MOST_VERTICES, u32::MAX).constant(LAST_IS_READ, 0);
+    // What ends a chain is its path's depth, not its length.
+    let pass = ListOptions { most: u32::MAX, last_is_read: false }.constants(pass.constant(LIST_END, lists.options.most - 1));
     let last = VERTEX_PART * pixels;
     let pass = pass.reads("ends", ends.places).reads("list_places", lists.places).touching(last);
     let pass = pass.reads("list_links", lists.links).touching(last).reads("list_light", lists.light).touching(last);

@@ -4,8 +4,9 @@
 //! samples that it is over (0: unfiltered). For hpsf.glossy the same for the specular terms, `specular` and `specular_samples`, with 4 bytes
 //! of layer read per pixel and pass more. History: the table, persistent or swapped with every frame.
 //!
-//! Three passes, and before them up to two that give slots in a fixed order (24 bytes of vertex and 4 of key read per pixel and level). collect: each pixel's sample into a cell, 56 bytes read per pixel, and per level 4 bytes of key (exact: 8) read and 28
-//! (float: 16) of sums updated. merge: over slots, 4 bytes read each, and for those taken 32 (16) of sums, 16 of seed and 16 of
+//! Three passes, and before them up to two that give slots in a fixed order (24 bytes of vertex and 4 of key read per pixel and level).
+//! collect: each pixel's sample into a cell, 56 bytes read per pixel, and per level 4 bytes of key (exact: 8) read and 28 (float: 16) of
+//! sums updated. merge: over slots, 4 bytes read each, and for those taken 32 (16) of sums, 16 of seed and 16 of
 //! mean. resolve: 56 bytes read and 20 written per pixel, 20 read per lookup and level. Where one of [`STATISTICS`] is asked for, a
 //! fourth pass puts out what became of the insertions, and a fifth before it whose keys the slots hold. hpsf/changes.rs lets cells
 //! forget where light has changed.

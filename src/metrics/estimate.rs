@@ -1,9 +1,8 @@
 //! Numbers with 95 % confidence intervals, from few independent samples.
 
-use super::statistics::BatchMeans;
+use super::statistics::{BatchMeans, two_sided_reach};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// A value and where the true one lies: an interval made this way misses it once in 20 times.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,13 +92,8 @@ pub(super) fn check(samples: &[f64]) -> Result<(), SampleError> {
     }
 }
 
-/// Quantile of Student's t at 97.5 %.
-pub(super) fn student_quantile(degrees_of_freedom: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, degrees_of_freedom).map_or(f64::NAN, |distribution| distribution.inverse_cdf(0.975))
-}
-
 fn student_interval(moments: &BatchMeans) -> [f64; 2] {
-    let half = student_quantile((moments.batches - 1) as f64) * moments.variance_of_mean().sqrt();
+    let half = two_sided_reach(0.95, (moments.batches - 1) as f64) * moments.variance_of_mean().sqrt();
     [moments.mean - half, moments.mean + half]
 }
 

@@ -1,7 +1,7 @@
 //! Quantiles of times that are not independent: one frame's load is the next one's too.
 
-use super::estimate::{Estimate, SampleError, check, student_quantile};
-use super::statistics::quantile;
+use super::estimate::{Estimate, SampleError, check};
+use super::statistics::{quantile, two_sided_reach};
 
 /// The quantile `at` (0 to 1; 0.5 for the median) of a stationary series such as the milliseconds of subsequent frames, with the
 /// interval between two order statistics: the number of values below the true quantile is nearly normal, with the variance that
@@ -18,7 +18,7 @@ pub fn quantile_of_series(values: &[f64], at: f64) -> Result<Estimate, SampleErr
     if worth <= 1.0 {
         return Ok(Estimate { samples: values.to_vec(), ..Estimate::exact(value) });
     }
-    let spread = student_quantile(worth - 1.0) * (at * (1.0 - at) / worth).sqrt();
+    let spread = two_sided_reach(0.95, worth - 1.0) * (at * (1.0 - at) / worth).sqrt();
     let [low, high] = [at - spread, at + spread].map(|at| quantile(values.to_vec(), at));
     Ok(Estimate { value, low, high, samples: values.to_vec() })
 }

@@ -20,17 +20,28 @@ pub fn sidak(significance: f64, tests: usize) -> f64 {
     -((-significance).ln_1p() / tests as f64).exp_m1()
 }
 
+/// Degrees of freedom beyond which Student's t and the normal distribution differ by less than double precision can show in the incomplete
+/// beta function. The library does not invert the former where they are infinite.
+const NORMAL_FROM: f64 = 1e6;
+
 /// Probability that a standard normal variable is further from 0 than `z`; Student's t for few `degrees_of_freedom`, which
 /// may be infinite.
 pub fn two_sided_p(z: f64, degrees_of_freedom: f64) -> f64 {
-    // Beyond this the two differ by less than double precision can show in the incomplete beta function.
-    const NORMAL_FROM: f64 = 1e6;
     let student = || StudentsT::new(0.0, 1.0, degrees_of_freedom).ok();
     let tail = match degrees_of_freedom < NORMAL_FROM {
         true => student().map_or(f64::NAN, |distribution| distribution.sf(z.abs())),
         false => Normal::standard().sf(z.abs()),
     };
     2.0 * tail
+}
+
+/// What a standard normal variable, or Student's t, is no further from 0 than with probability `confidence`: undoes [`two_sided_p`].
+pub fn two_sided_reach(confidence: f64, degrees_of_freedom: f64) -> f64 {
+    let at = 0.5 + confidence / 2.0;
+    match degrees_of_freedom < NORMAL_FROM {
+        true => StudentsT::new(0.0, 1.0, degrees_of_freedom).map_or(f64::NAN, |distribution| distribution.inverse_cdf(at)),
+        false => Normal::standard().inverse_cdf(at),
+    }
 }
 
 /// Mean and estimated variance *of that mean*, from independent batches (Welford's recurrence).
@@ -135,6 +146,8 @@ mod tests {
         assert!((two_sided_p(-1.959_964, f64::INFINITY) - 0.05).abs() < 1e-7);
         assert!((two_sided_p(2.228_139, 10.0) - 0.05).abs() < 1e-7);
         assert!((two_sided_p(5.326_724, f64::INFINITY) / 1e-7 - 1.0).abs() < 1e-4);
+        assert!((two_sided_reach(0.95, f64::INFINITY) - 1.959_964).abs() < 1e-6);
+        assert!((two_sided_reach(0.95, 10.0) - 2.228_139).abs() < 1e-6);
         assert!((two_sided_p(5.0, 0.99e6) / two_sided_p(5.0, 1.01e6) - 1.0).abs() < 1e-3);
     }
 

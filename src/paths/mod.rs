@@ -8,7 +8,7 @@ pub mod vertices;
 mod wavefront;
 
 pub use megakernel::Retraced;
-pub use wavefront::Options as WavefrontOptions;
+pub use wavefront::{FOOTPRINT, Options as WavefrontOptions, RAY, WEIGHTS};
 
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;

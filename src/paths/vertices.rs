@@ -17,6 +17,11 @@ impl ListOptions {
     pub fn sampled(&self) -> u32 {
         self.most - u32::from(self.last_is_read)
     }
+
+    /// Of a kernel that makes lists.
+    pub fn constants<'b, 'a>(&self, pass: PassBuilder<'b, 'a>) -> PassBuilder<'b, 'a> {
+        pass.constant(MOST_VERTICES, self.most).constant(LAST_IS_READ, self.last_is_read.into())
+    }
 }
 
 /// A list of vertices for each pixel's path; 48 bytes a vertex.
@@ -61,7 +66,7 @@ impl PathVertices {
     }
 
     pub(super) fn written_by<'b, 'a>(&self, pass: PassBuilder<'b, 'a>) -> PassBuilder<'b, 'a> {
-        let pass = pass.constant(MOST_VERTICES, self.options.most).constant(LAST_IS_READ, self.options.last_is_read.into());
+        let pass = self.options.constants(pass);
         let pass = pass.writes("path_vertices", self.count).writes("specular_attenuation", self.specular_attenuation);
         pass.writes("vertex_places", self.places).writes("vertex_links", self.links).writes("vertex_light", self.light)
     }

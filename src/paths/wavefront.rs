@@ -26,9 +26,9 @@ const QUEUE_GROUP: u32 = 128;
 
 /// Bytes (queue.glsl, records.glsl).
 const HEAD: u64 = 16;
-const RAY: u64 = 32;
-const WEIGHTS: u64 = 32;
-const FOOTPRINT: u64 = 16;
+pub const RAY: u64 = 32;
+pub const WEIGHTS: u64 = 32;
+pub const FOOTPRINT: u64 = 16;
 const HIT: u64 = 20;
 const LIGHT: u64 = 32;
 const SUMS: u64 = 24;

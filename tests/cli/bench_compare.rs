@@ -2,6 +2,7 @@
 
 use super::records::{figure, normal, record};
 use super::{Run, assert_refused, run};
+use pathspace::bench::record::Figure;
 use pathspace::bench::{Log, Record};
 use rand::SeedableRng;
 use rand_pcg::Pcg32;
@@ -50,6 +51,24 @@ fn what_became_worse_decides_the_exit_code() {
     assert_eq!(with(&["a", "--fail-above", "frame_ms=0"]).code, Some(0), "itself");
     assert_eq!(run(directory.path(), &["bench-compare", "slow", "a"]).code, Some(0), "better");
     assert_eq!(with(&["slow/results.jsonl"]).code, Some(1), "a file in place of its folder");
+}
+
+/// The reference that the integrator makes is darker, and what is measured against it is as right as before.
+#[test]
+fn light_that_the_integrator_loses_is_a_regression() {
+    let directory = runs();
+    let mut dark = points(10.0, 1e6, 5);
+    let mut before = points(10.0, 1e6, 1);
+    for (records, mean) in [(&mut before, 1.0), (&mut dark, 0.99)] {
+        let radiance = Figure { value: mean, low: mean - 1e-3, high: mean + 1e-3, unit: String::new(), samples: vec![] };
+        records[0].figures.insert("reference_radiance".to_owned(), radiance);
+    }
+    for (name, records) in [("before", before), ("dark", dark)] {
+        write(&directory.path().join(name), &records);
+    }
+    let Run { code, stdout, .. } = run(directory.path(), &["bench-compare", "before", "dark"]);
+    assert!(code == Some(1) && stdout.contains("1 REGRESSED"), "{stdout}");
+    assert_eq!(run(directory.path(), &["bench-compare", "before", "before"]).code, Some(0));
 }
 
 #[test]

@@ -1,4 +1,6 @@
 //! Surfaces for tests of lib/bsdf.glsl: what a kernel needs to make one, and the options that switch the model.
+//!
+//! Each test binary uses its own part of this.
 #![allow(dead_code)]
 
 use crate::common::KernelOptions;

@@ -68,8 +68,10 @@ vec4 jitter_numbers(uvec2 pixel, uint index) {
 /// With hpsf.shrink, cells are the smaller the more frames there have been, and have the more samples all the same: where cells integrate,
 /// their mean goes to the radiance of a point.
 int level_at(float distance, float number) {
-    float shrunk = parameters.hpsf_width * pow(float(frame.frame) + 1.0, -parameters.hpsf_shrink);
-    float width = shrunk * pixel_footprint(max(distance, 0.0));
+    float width = parameters.hpsf_width * pixel_footprint(max(distance, 0.0));
+    if (parameters.hpsf_shrink > 0.0) {
+        width *= pow(float(frame.frame) + 1.0, -parameters.hpsf_shrink);
+    }
     return level_of_width(HPSF_BLEND == 1u ? width * exp2(number - 0.5) : width);
 }
 

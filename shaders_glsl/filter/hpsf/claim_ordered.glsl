@@ -1,17 +1,5 @@
 // hpsf.insertion = ordered: slots for the keys that are new in this frame, before any sample is added (filter/hpsf/ordered.glsl).
-#include "filter/hpsf/cell.glsl"
-#include "filter/hpsf/find.glsl"
-
-layout(set = 1, binding = 3, scalar) buffer Keys { uint at[]; } keys;
-
-#include "filter/hpsf/propose.glsl"
-
-uint key_word(uint at) {
-    return keys.at[at];
-}
-
-/// The invocation's point; false where it has none. Defined by the kernel.
-bool find_point(out CellPoint at);
+#include "filter/hpsf/ordered_points.glsl"
 
 void main() {
     CellPoint at;

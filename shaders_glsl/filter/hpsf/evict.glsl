@@ -1,19 +1,8 @@
 // hpsf.eviction = priority: keys that have found no slot take those of cells that nobody has touched in this frame, of the lowest priority
 // first: Binder, section 3.4.3, and filter/hpsf/ordered.glsl. Only where the table is full does this pass do more than look.
-#include "filter/hpsf/cell.glsl"
-#include "filter/hpsf/find.glsl"
+#include "filter/hpsf/ordered_points.glsl"
 
-layout(set = 1, binding = 3, scalar) buffer Keys { uint at[]; } keys;
 layout(set = 1, binding = 4, scalar) writeonly buffer Cells { uvec4 at[]; } cells;
-
-#include "filter/hpsf/propose.glsl"
-
-uint key_word(uint at) {
-    return keys.at[at];
-}
-
-/// The invocation's point; false where it has none. Defined by the kernel.
-bool find_point(out CellPoint at);
 
 void main() {
     CellPoint at;
