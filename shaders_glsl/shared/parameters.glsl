@@ -111,6 +111,9 @@ layout(constant_id = 161) const uint HPSF_GLOSSY = 0;
 //@ anhpsf.transport last last|all
 /// Between which cells of a continued path light travels in a frame: from its newest vertex to the one before, or from each to the one before (Meijer, section 7). All: light from deep comes sooner; 64 bytes and as many lookups for each bounce of paths.max_bounces. Where things move: the last.
 layout(constant_id = 154) const uint ANHPSF_TRANSPORT = 0;
+//@ anhpsf.choice deepest deepest|importance
+/// Which path a pixel continues: its own until it is as deep as paths.max_bounces, or at each new vertex that one or this frame's, with a chance by what another sample is worth to their cells: more where these are bright, pass much on, or have few samples. Importance goes with anhpsf.transport=last; two lookups, and no frame without a scattered ray.
+layout(constant_id = 155) const uint ANHPSF_CHOICE = 0;
 
 struct Parameters {
     //@ paths.max_bounces 8 0..64 bounces

@@ -1,10 +1,10 @@
 //! Paths that are continued from frame to frame, filtered at every diffuse vertex: shaders_glsl/filter/anhpsf/, Meijer, section 4.4. Two passes
 //! beside those of [`super::nhpsf`], whose functions and table they share.
 //!
-//! continue: takes the ends of this frame's paths and their lists; one scattered ray and one shadow ray for the path that each pixel
-//! continues. transport: takes the chains that come of it and the last frame's table; returns the chains' samples as a list, which
-//! enters cells as nhpsf's does. History: the paths, 108 bytes a pixel, and 48 for each vertex of a chain: two, or all of a path. Reads and writes
-//! as much, 48 more of ends, 20 for each lookup, and 16 for each sample.
+//! continue: takes the ends of this frame's paths, their lists and the last frame's table; one scattered ray and one shadow ray for the path
+//! that each pixel continues. transport: takes the chains that come of it and the same table; returns the chains' samples as a list, which
+//! enters cells as nhpsf's does. History: the paths, 108 bytes a pixel, and 48 for each vertex of a chain: two, three where paths give
+//! way to others, or all of a path. Reads and writes as much, 48 more of ends, 20 for each lookup, and 16 for each sample.
 
 use super::hpsf::Table;
 use crate::frame::FrameBuilder;
@@ -19,15 +19,42 @@ const LIST_END: u32 = 207;
 const CONTINUED: u64 = 28;
 const VERTEX_PART: u64 = 16;
 
-/// Two, or as many as a path can have behind its first filter vertex, the one that is only looked up included.
-pub fn chain_length(whole: bool, max_bounces: u32) -> u32 {
-    if whole { (max_bounces + 1).max(2) } else { 2 }
+/// How paths are continued.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// Vertices of a chain: two, or as many as a path can have behind its first filter vertex, the one that is only looked up included.
+    length: u32,
+    /// A path may give way to another (shaders_glsl/filter/anhpsf/choice.glsl).
+    chooses: bool,
+}
+
+impl Options {
+    /// `whole`: light travels between all vertices of a path, which then gives way to none.
+    pub fn new(whole: bool, chooses: bool, max_bounces: u32) -> Self {
+        if whole && chooses {
+            tracing::warn!("anhpsf.choice=importance is for anhpsf.transport=last: the deepest path goes on");
+        }
+        Self { length: if whole { (max_bounces + 1).max(2) } else { 2 }, chooses: chooses && !whole }
+    }
+
+    /// Vertices of a chain that may have samples.
+    pub fn sampled(&self) -> u32 {
+        self.length
+    }
 }
 
 /// `lists`: of this frame's paths, which can be continued at `ends`.
-pub fn add(frame: &mut FrameBuilder, table: &Table, lists: &PathVertices, ends: PathEnds, length: u32) -> Result<PathVertices, GpuError> {
+pub fn add(
+    frame: &mut FrameBuilder,
+    table: &Table,
+    lists: &PathVertices,
+    ends: PathEnds,
+    options: Options,
+) -> Result<PathVertices, GpuError> {
     let pixels = u64::from(frame.pixels());
-    let part = VERTEX_PART * pixels * u64::from(length);
+    let Options { length, chooses } = options;
+    // Behind a chain's vertices waits the one that it has given way to.
+    let part = VERTEX_PART * pixels * u64::from(length + u32::from(chooses));
     let light = frame.kept_buffer("light of chains", part)?;
     let chains = PathVertices {
         options: ListOptions { most: length, last_is_read: false },
@@ -50,6 +77,7 @@ pub fn add(frame: &mut FrameBuilder, table: &Table, lists: &PathVertices, ends: 
     let pass = state.into_iter().try_fold(pass, |pass, state| state.map(|(name, buffer)| pass.updates(name, buffer)))?;
     let pass = pass.updates("chain_places", chains.places).touching(2 * last).updates("chain_links", chains.links).touching(2 * last);
     let pass = pass.updates("chain_light", light).touching(2 * last);
+    let pass = table.looks_up(pass, if chooses { 2 * pixels } else { 0 });
     pass.writes("chain_vertices", vertices).writes("chain_samples", chains.count).add()?;
 
     let pass = frame.pass("anhpsf transport", "filter/anhpsf/transport").reads("chain_vertices", vertices);

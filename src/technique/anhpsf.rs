@@ -22,10 +22,11 @@ fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle,
     // Paths are continued from vertices that they have only looked up, in the thesis' form, too.
     let list = ListOptions { most: number("nhpsf.vertices").min(number("paths.max_bounces")).max(1), last_is_read: true };
     let keys = u64::from(frame.pixels());
-    let length = anhpsf::chain_length(number("anhpsf.transport") == 1, number("paths.max_bounces"));
-    hpsf::passes_of(frame, options, 1 + list.sampled() + length, false, |frame, table| {
+    let (whole, chooses) = (number("anhpsf.transport") == 1, number("anhpsf.choice") == 1);
+    let growth = anhpsf::Options::new(whole, chooses, number("paths.max_bounces"));
+    hpsf::passes_of(frame, options, 1 + list.sampled() + growth.sampled(), false, |frame, table| {
         let (terms, vertices, ends) = paths::add_with_ends(frame, list, |pass| table.looks_up(pass, keys))?;
-        let chains = anhpsf::add(frame, table, &vertices, ends, length)?;
+        let chains = anhpsf::add(frame, table, &vertices, ends, growth)?;
         Ok(Paths { terms, behind: Some(vertices), chains: Some(chains), retraced: None })
     })
 }

@@ -33,7 +33,7 @@ const SWITCHES: [&[(&str, &str)]; 15] = [
     &[("hpsf.normals", "similar"), ("hpsf.normal_bits", "6"), ("hpsf.few", "1000")],
     &[("hpsf.eviction", "priority"), ("hpsf.cells", "0.01"), ("hpsf.width", "4")],
     &[("hpsf.blend", "on"), ("hpsf.limit", "1"), ("hpsf.few", "1")],
-    &[("sspsf.window", "3")],
+    &[("sspsf.window", "3"), ("anhpsf.choice", "importance")],
     &[("hpsf.split", "on"), ("hpsf.smooth", "3"), ("hpsf.smooth_specular", "2")],
     &[("hpsf.smooth", "5"), ("hpsf.smooth_noise", "1000"), ("paths.scramble", "tile"), ("frame.jitter", "on")],
 ];

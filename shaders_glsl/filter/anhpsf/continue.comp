@@ -1,6 +1,7 @@
 // Continues a path of each pixel by one scattered ray and one shadow ray: Meijer, section 4.4, steps 4 and 5.
 //
-// The pixel keeps the deepest valid path that is not yet as deep as paths.max_bounces. That is the one that it has continued so far; where
+// The pixel keeps the deepest valid path that is not yet as deep as paths.max_bounces, or with anhpsf.choice = importance the one that cells
+// have more use for (filter/anhpsf/choice.glsl). The deepest is the one that it has continued so far; where
 // there is none, the path of this frame goes on from the vertex that its list ends with, which it has only looked up. A path is no longer
 // valid when the surface that its ray leaves has moved, or the frame's origin has: rays must leave from exact places. A restart ends all.
 //
@@ -20,6 +21,8 @@
 #define VERTEX_LIST
 #include "accel/trace.glsl"
 #include "filter/anhpsf/chain.glsl"
+#include "filter/anhpsf/choice.glsl"
+#include "filter/nhpsf/known.glsl"
 #include "paths/end.glsl"
 #include "paths/wavefront/state.glsl"
 
@@ -58,15 +61,25 @@ struct Origin {
 
 Origin origin;
 
+const Hit NOTHING = Hit(0.0, 0u, 0u, vec2(0.0));
+
 uint at_of(uint pixel, uint index) {
     return index * frame.extent.x * frame.extent.y + pixel;
 }
 
+uvec2 coordinates_of(uint pixel) {
+    return uvec2(pixel % frame.extent.x, pixel / frame.extent.x);
+}
+
+/// Position, and view-plane distance of the path.
+vec4 place_of(uvec2 coordinates, FilterVertex vertex) {
+    return vec4(vertex.position, view_plane_distance(primary_ray(coordinates, frame.jitter), frame.camera, vertex.travelled));
+}
+
 void keep_vertex(uint pixel, uint index, PathVertex vertex) {
     uint at = at_of(pixel, index);
-    uvec2 coordinates = uvec2(pixel % frame.extent.x, pixel / frame.extent.x);
     bool is_origin = index == origin.index;
-    vec4 place = vec4(vertex.at.position, view_plane_distance(primary_ray(coordinates, frame.jitter), frame.camera, vertex.at.travelled));
+    vec4 place = place_of(coordinates_of(pixel), vertex.at);
     uvec4 link = uvec4(floatBitsToUint(vertex.attenuation), pack_normal(vertex.at.normal));
     chain_places.at[at] = is_origin ? origin.place : place;
     chain_links.at[at] = is_origin ? origin.link : link;
@@ -84,7 +97,8 @@ bool has_moved(uint index) {
 }
 
 bool is_valid(Continued path) {
-    return path.vertices > 0u && (path.grows == 1u || path.frames_left > 0u) && path.origin_steps == frame.origin_steps && !has_moved(path.instance);
+    bool lives = CHOOSES || path.grows == 1u || path.frames_left > 0u;
+    return path.vertices > 0u && lives && path.origin_steps == frame.origin_steps && !has_moved(path.instance);
 }
 
 /// The path that waits at the end of this frame's list, from that vertex on.
@@ -105,113 +119,165 @@ Path path_at(PathEnd end, Sampler numbers) {
     return path;
 }
 
-/// One ray that the path scatters, unless it `begins`, and one shadow ray, which are counted. False where the path ends.
-bool step_path(inout Path path, inout Hit hit, inout Terms terms, bool begins, inout uvec2 counts) {
+/// A path on its way through the frame.
+struct Walk {
+    Path path;
+    /// At its newest vertex.
+    Hit hit;
+    Terms terms;
+    /// No ray has to find its first vertex.
+    bool begins;
+    bool goes_on;
+};
+
+/// The path that waits at the end of this frame's list; its first vertex is the chain's vertex `index`.
+Walk walk_from_end(uint pixel, uint index, Sampler numbers) {
+    PathEnd end = ends.at[pixel];
+    uint from = at_of(pixel, LIST_END);
+    origin = Origin(index, list_places.at[from], list_links.at[from], list_light.at[from].w);
+    Terms terms = no_terms();
+    terms.vertices = index + 1u;
+    Walk walk = Walk(path_at(end, numbers), end.hit, terms, true, true);
+    walk.path.place = pixel;
+    return walk;
+}
+
+/// The path that the last frame has kept.
+Walk walk_from_kept(uint pixel, Continued before, Sampler numbers) {
+    uint from = at_of(pixel, before.vertices - 1u);
+    Terms terms = no_terms();
+    terms.vertices = WHOLE_CHAIN ? before.vertices : 1u;
+    uvec4 light = chain_light.at[from];
+    origin = Origin(terms.vertices - 1u, chain_places.at[from], chain_links.at[from], light.w);
+    terms.behind.radiance = uintBitsToFloat(light.xyz);
+    Path path = restored_path(rays.at[pixel], weights.at[pixel], footprints.at[pixel], numbers);
+    Walk walk = Walk(path, NOTHING, terms, false, before.grows == 1u);
+    walk.path.place = pixel;
+    return walk;
+}
+
+/// Whether the path makes room for the one that waits at the end of this frame's list: where it has ended, or by choice at a vertex that `is_new`
+/// (filter/anhpsf/choice.glsl). One that passes a mirror goes on, as its last filter vertex is incomplete.
+bool gives_way(uint pixel, Walk walk, bool is_new, bool is_last) {
+    if (walk.begins || ends.at[pixel].vertex == NO_VERTEX) {
+        return false;
+    }
+    if (!is_new) {
+        return is_last || !walk.goes_on;
+    }
+    uvec2 coordinates = coordinates_of(pixel);
+    uint index = walk.terms.vertices;
+    PathVertex own = walk.terms.behind;
+    FilterPoint point = vertex_point(coordinates, place_of(coordinates, own.at), pack_normal(own.at.normal), pack_normal(own.at.incident));
+    Cell own_cell = known_at(point, vertex_numbers(coordinates, index - 1u));
+    if (is_last || own_cell.count == 0u) {
+        return own_cell.count > 0u;
+    }
+    uint from = at_of(pixel, LIST_END);
+    uvec4 link = list_links.at[from];
+    point = vertex_point(coordinates, list_places.at[from], link.w, list_light.at[from].w);
+    float chance = chance_to_give_way(own_cell, own.attenuation, known_at(point, vertex_numbers(coordinates, index)), uintBitsToFloat(link.xyz));
+    walk.path.numbers.dimension = SELECTION_PAIRS + 16u * walk.path.vertex + 14u;
+    return sample_1d(walk.path.numbers) < chance;
+}
+/// One ray that the path scatters, unless it begins, and one shadow ray, from its newest vertex or from that of the path that it gives way to.
+/// Both are counted. `chain`: vertices of the path that has given way, and those of them that are complete.
+void step_path(uint pixel, bool is_last, inout Walk walk, inout uvec2 chain, inout uvec2 counts) {
+    const uint turns = CHOOSES ? 3u : 2u;
+    uint vertices = walk.terms.vertices;
     Pending pending;
     pending.ray = NO_RAY;
-    uint shadow_rays = 1u;
-    bool goes_on = true;
-    for (uint turn = 0u; turn < 2u; turn++) {
-        bool lights = turn == 1u;
+    for (uint turn = 0u; turn < turns; turn++) {
+        bool lights = turn + 1u == turns;
+        if (turn == 1u && !lights && gives_way(pixel, walk, walk.terms.vertices > vertices, is_last)) {
+            finish_vertex(pixel, walk.terms);
+            chain = uvec2(walk.terms.vertices, vertices);
+            walk = walk_from_end(pixel, walk.terms.vertices, walk.path.numbers);
+            pending.ray = NO_RAY;
+        } else if (turn == 1u && !lights || turn == 0u && !walk.goes_on) {
+            continue;
+        }
         Ray ray = pending.ray;
         uint seed = pending.alpha_seed;
         if (!lights) {
-            ray = path.ray;
-            seed = alpha_seed(path);
+            ray = walk.path.ray;
+            seed = alpha_seed(walk.path);
         }
-        counts += uvec2(!lights && !begins, lights && ray.t_max > 0.0);
+        counts += uvec2(!lights && !walk.begins, lights && ray.t_max > 0.0);
         Hit found;
         bool blocked = accel_trace(ray, lights, seed, found);
         if (lights) {
             if (ray.t_max > 0.0 && !blocked) {
-                add_term(terms, pending.term, pending.diffuse_weight, pending.specular_weight, pending.radiance);
+                add_term(walk.terms, pending.term, pending.diffuse_weight, pending.specular_weight, pending.radiance);
             }
             break;
         }
-        if (!begins) {
-            hit = found;
-            goes_on = follow(path, blocked, found, terms);
+        if (!walk.begins) {
+            walk.hit = found;
+            walk.goes_on = follow(walk.path, blocked, found, walk.terms);
         }
-        goes_on = goes_on && visit(path, hit, !begins, shadow_rays, terms, pending);
+        uint shadow_rays = 1u;
+        walk.goes_on = walk.goes_on && visit(walk.path, walk.hit, !walk.begins, shadow_rays, walk.terms, pending);
     }
-    return goes_on;
 }
 
-void load_origin(uint pixel, uint vertices, inout Terms terms) {
-    uint from = at_of(pixel, vertices - 1u);
-    terms.vertices = WHOLE_CHAIN ? vertices : 1u;
-    uvec4 light = chain_light.at[from];
-    origin = Origin(terms.vertices - 1u, chain_places.at[from], chain_links.at[from], light.w);
-    terms.behind.radiance = uintBitsToFloat(light.xyz);
-}
-
-void begin_chain(uint pixel, inout Terms terms) {
-    uint from = at_of(pixel, LIST_END);
-    terms.vertices = 1u;
-    origin = Origin(0u, list_places.at[from], list_links.at[from], list_light.at[from].w);
-}
-
-/// Writes what the next frame goes on with; nothing where the path has ended, and its light is not sent again.
-void keep_path(uint pixel, Path path, Hit hit, Terms terms, bool goes_on, uint frames_left) {
-    uint vertices = goes_on || WHOLE_CHAIN ? terms.vertices : 0u;
-    continued.at[pixel] = Continued(vertices, goes_on ? 1u : 0u, frames_left, hit.instance, frame.origin_steps);
+/// Writes what the next frame goes on with: the path, or the chain alone where its vertices are sent again or have not been sent yet.
+void keep_path(uint pixel, Walk walk, bool goes_on, bool waits, uint frames_left) {
+    uint vertices = goes_on || waits ? walk.terms.vertices : 0u;
+    continued.at[pixel] = Continued(vertices, goes_on ? 1u : 0u, frames_left, walk.hit.instance, frame.origin_steps);
     if (goes_on) {
-        rays.at[pixel] = stored_ray(path);
-        weights.at[pixel] = stored_weights(path);
-        footprints.at[pixel] = stored_footprint(path);
+        rays.at[pixel] = stored_ray(walk.path);
+        weights.at[pixel] = stored_weights(walk.path);
+        footprints.at[pixel] = stored_footprint(walk.path);
     }
 }
 
-void write_lengths(uvec2 coordinates, uint vertices, uint samples) {
-    imageStore(chain_vertices, ivec2(coordinates), uvec4(vertices));
-    imageStore(chain_samples, ivec2(coordinates), uvec4(samples));
+void write_lengths(uvec2 coordinates, uvec2 vertices_and_samples) {
+    imageStore(chain_vertices, ivec2(coordinates), uvec4(vertices_and_samples.x));
+    imageStore(chain_samples, ivec2(coordinates), uvec4(vertices_and_samples.y));
+}
+
+/// Vertices of a chain after the step, and those of them that are complete.
+uvec2 lengths_of(Walk walk, uint vertices, bool begins, bool is_last) {
+    bool waits = walk.goes_on && !(is_last && walk.terms.vertices == vertices);
+    bool is_new = begins || walk.terms.vertices > vertices;
+    // Sent again, a vertex is sent from the frame after its own on, even if its path has ended there.
+    bool is_incomplete = waits || (is_new && (is_last || WHOLE_CHAIN));
+    return uvec2(walk.terms.vertices, walk.terms.vertices - (is_incomplete ? 1u : 0u));
 }
 
 void continue_path(uvec2 coordinates, uint pixel) {
     Continued before = continued.at[pixel];
-    PathEnd end = ends.at[pixel];
     bool begins = !is_valid(before);
-    if (begins && end.vertex == NO_VERTEX) {
+    if (begins && ends.at[pixel].vertex == NO_VERTEX) {
         continued.at[pixel].vertices = 0u;
-        write_lengths(coordinates, 0u, 0u);
+        write_lengths(coordinates, uvec2(0u));
         return;
     }
-    if (!begins && before.grows == 0u) {
+    if (!begins && before.grows == 0u && WHOLE_CHAIN) {
         continued.at[pixel].frames_left = before.frames_left - 1u;
-        write_lengths(coordinates, before.vertices, before.vertices);
+        write_lengths(coordinates, uvec2(before.vertices));
         return;
     }
     Sampler numbers = path_numbers(coordinates, frame.first_sample);
-    Terms terms = no_terms();
-    Path path;
-    Hit hit = end.hit;
-    if (begins) {
-        begin_chain(pixel, terms);
-        path = path_at(end, numbers);
-    } else {
-        load_origin(pixel, before.vertices, terms);
-        path = restored_path(rays.at[pixel], weights.at[pixel], footprints.at[pixel], numbers);
-    }
-    path.place = pixel;
+    Walk walk = begins ? walk_from_end(pixel, 0u, numbers) : walk_from_kept(pixel, before, numbers);
     // The last ray has to find a vertex to be looked up, and `arrive` ends paths that are too deep.
-    bool is_last = path.vertex > parameters.max_bounces;
+    bool is_last = walk.path.vertex > parameters.max_bounces;
     if (is_last) {
-        path.filter_vertex -= path.vertex - parameters.max_bounces;
-        path.vertex = parameters.max_bounces;
+        walk.path.filter_vertex -= walk.path.vertex - parameters.max_bounces;
+        walk.path.vertex = parameters.max_bounces;
     }
-    uint vertices = terms.vertices;
+    uint vertices = walk.terms.vertices;
     uint counted = imageLoad(ray_count, ivec2(coordinates)).x;
     uvec2 counts = uvec2(counted & 0xffffu, counted >> 16);
-    bool goes_on = step_path(path, hit, terms, begins, counts);
+    uvec2 chain = uvec2(0u);
+    step_path(pixel, is_last, walk, chain, counts);
     imageStore(ray_count, ivec2(coordinates), uvec4(pack_counts(counts)));
-    finish_vertex(pixel, terms);
-    bool waits = goes_on && !(is_last && terms.vertices == vertices);
-    bool is_new = begins || terms.vertices > vertices;
-    // Sent again, a vertex is sent from the frame after its own on, even if its path has ended there.
-    bool is_incomplete = waits || (is_new && (is_last || WHOLE_CHAIN));
-    write_lengths(coordinates, terms.vertices, terms.vertices - (is_incomplete ? 1u : 0u));
-    uint frames_left = begins ? parameters.max_bounces + 1u - end.vertex : before.frames_left - 1u;
-    keep_path(pixel, path, hit, terms, goes_on && !is_last, frames_left);
+    finish_vertex(pixel, walk.terms);
+    bool gave_way = chain.x > 0u;
+    write_lengths(coordinates, gave_way ? chain : lengths_of(walk, vertices, begins, is_last));
+    uint frames_left = walk.begins ? parameters.max_bounces + 1u - ends.at[pixel].vertex : before.frames_left - 1u;
+    keep_path(pixel, walk, walk.goes_on && (gave_way || !is_last), gave_way || WHOLE_CHAIN, frames_left);
 }
 
 void main() {
