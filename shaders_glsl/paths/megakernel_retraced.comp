@@ -6,7 +6,7 @@
 // them, no launch waits for them, and both traces of a path are the same instructions, without which bits would differ.
 //
 // A retraced path begins at the last frame's camera, not at its filter vertex: that costs one more ray, and nothing has to be kept but
-// 16 bytes, where a vertex would take its hit, view direction, footprint, throughput and attenuation; mirrors and glass in front of it are
+// 28 bytes, where a vertex would take its hit, view direction, footprint, throughput and attenuation; mirrors and glass in front of it are
 // looked through again. The camera may move: what has changed is a property of the place, whoever sees it.
 #define SEPARATE_TERMS
 #define SHARED_JITTER
@@ -39,9 +39,10 @@ layout(set = 1, binding = 12, r32ui) writeonly uniform uimage2D retraced_ray_cou
 
 Kept kept_path(Terms terms, Ray from_camera, Camera camera) {
     // Filters see what an image of the frame's precision gives back.
-    vec3 radiance = stored(received(terms.diffuse_direct, terms.attenuation)) + stored(received(terms.diffuse_indirect, terms.attenuation));
+    vec3 diffuse = stored(received(terms.diffuse_direct, terms.attenuation)) + stored(received(terms.diffuse_indirect, terms.attenuation));
+    vec3 specular = terms.vertex.layer == 0u ? vec3(0.0) : stored(terms.specular_direct) + stored(terms.specular_indirect);
     float distance = view_plane_distance(from_camera, camera, terms.vertex.travelled);
-    return all_finite(radiance) ? Kept(radiance, distance) : Kept(vec3(0.0), 0.0);
+    return all_finite(diffuse + specular) ? Kept(diffuse, distance, specular) : Kept(vec3(0.0), 0.0, vec3(0.0));
 }
 
 void write_retraced(uvec2 square, Terms terms, uvec2 counts) {
@@ -50,7 +51,7 @@ void write_retraced(uvec2 square, Terms terms, uvec2 counts) {
     Kept now = kept_path(terms, from_camera, frame.previous_camera);
     FilterVertex vertex = terms.vertex;
     uvec2 directions = now.distance > 0.0 ? uvec2(pack_normal(vertex.normal), pack_normal(vertex.incident)) : uvec2(0u);
-    retraced.at[retraced_index(square)] = Retraced(now, vertex.position, directions.x, directions.y);
+    retraced.at[retraced_index(square)] = Retraced(now, vertex.position, directions.x, directions.y, vertex.layer);
     imageStore(retraced_ray_count, ivec2(square), uvec4(pack_counts(counts)));
 }
 

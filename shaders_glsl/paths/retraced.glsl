@@ -25,11 +25,12 @@ uvec2 retraced_pixel(uvec2 square, uint sample_index) {
     return first + min(uvec2(unit_float(pcg3d(uvec3(square, sample_index ^ frame.seed)).xy) * vec2(size)), size - 1u);
 }
 
-/// A path of this frame as the next one needs it: radiance behind the filter vertex, and the vertex's view-plane distance, 0 where the path
-/// is of no use.
+/// A path of this frame as the next one needs it: what the filter vertex's diffuse lobe receives, what its other lobes send on where they are
+/// filtered, and the vertex's view-plane distance, 0 where the path is of no use.
 struct Kept {
-    vec3 radiance;
+    vec3 diffuse;
     float distance;
+    vec3 specular;
 };
 
 /// A path of the last frame, traced in this one.
@@ -39,6 +40,7 @@ struct Retraced {
     vec3 position;
     uint normal;
     uint incident;
+    uint layer;
 };
 
 #endif

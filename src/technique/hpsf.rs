@@ -7,7 +7,6 @@ use crate::filter::smooth::{self, Layer, Passes};
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
 use crate::paths::gbuffer;
-use crate::paths::terms::Terms;
 use crate::scene::effects::Effect;
 
 /// The value of hpsf.time.
@@ -47,7 +46,7 @@ pub(super) fn passes_of(
     let glossy = further_table(options.parameters.number("hpsf.glossy") == 1.0, Part::Glossy)?;
     let paths = add_paths(frame, &table)?;
     let diffuse = filter_diffuse(frame, &table, indirect.as_ref(), &paths, options)?;
-    let specular = filter_specular(frame, glossy.as_ref(), &paths.terms, options)?;
+    let specular = filter_specular(frame, glossy.as_ref(), &paths, options)?;
     let radiance = composite::add_parts(frame, &paths.terms, diffuse, specular)?;
     match gbuffer {
         Some(gbuffer) if over_frames => temporal::add(frame, &gbuffer, radiance),
@@ -91,12 +90,12 @@ fn filter_diffuse(
 fn filter_specular(
     frame: &mut FrameBuilder,
     glossy: Option<&Table>,
-    terms: &Terms,
+    paths: &Paths,
     options: PassOptions,
 ) -> Result<[ImageHandle; 2], GpuError> {
-    let passes = smoothing(options, "hpsf.smooth_specular");
+    let (terms, passes) = (&paths.terms, smoothing(options, "hpsf.smooth_specular"));
     let noisy = match glossy {
-        Some(table) => table.filter(frame, &Paths { terms: *terms, behind: None, chains: None, retraced: None })?,
+        Some(table) => table.filter(frame, &Paths { behind: None, chains: None, ..*paths })?,
         None if passes.count == 0 => return Ok([terms.specular_direct, terms.specular_indirect]),
         None => smooth::add_specular(frame, terms)?,
     };

@@ -7,7 +7,7 @@ use glam::DVec3;
 use pathspace::display::Image;
 use pathspace::gpu::Gpu;
 use pathspace::scene::animation::{Animation, Channel, Interpolation, Keys};
-use pathspace::scene::{Instance, Light, LightKind, Mesh, Scene};
+use pathspace::scene::{Instance, Light, LightKind, Material, Mesh, Scene};
 use pathspace::technique::{Renderer, Settings};
 
 fn with(values: &[(&str, &str)]) -> Settings {
@@ -27,7 +27,7 @@ fn a_still_scene_is_integrated_to_the_bit() {
     for (technique, name) in [("hpsf", "material"), ("hpsf+", "cornell")] {
         let scene = builtin(name);
         let [integrate, hybrid] = ["integrate", "hybrid"].map(|time| {
-            let mut settings = with(&[("hpsf.time", time), ("hpsf.cells", "4"), ("hpsf.retrace", "2")]);
+            let mut settings = with(&[("hpsf.time", time), ("hpsf.cells", "4"), ("hpsf.retrace", "2"), ("hpsf.glossy", "on")]);
             // Or no path would be retraced, because nothing moves.
             settings.all_effects = true;
             render_frames(&gpu, &scene, &settings, technique, 4)
@@ -75,14 +75,15 @@ fn lit_floor(light: DVec3) -> (Scene, u32) {
 /// The light's height changes in this frame.
 const STEP: u32 = 8;
 
-/// How much of a step of the light the picture has taken by the end of each of the first frames with it.
-fn response(gpu: &Gpu, time: &str) -> Vec<f64> {
+/// How much of a step of the light one of the renderer's outputs has taken by the end of each of the first frames with it.
+fn response(gpu: &Gpu, values: &[(&str, &str)], material: &Material, shown: &str) -> Vec<f64> {
     let high = DVec3::new(0.0, 4.0, 0.0);
     let (mut scene, light) = lit_floor(high);
+    scene.materials[0] = material.clone();
     scene.animation = moving(light, vec![high, DVec3::new(0.0, 3.0, 0.0)], Interpolation::Step);
-    let mut settings = with(&[("hpsf.time", time)]);
+    let mut settings = with(values);
     settings.view = from_above(0.5);
-    let shown = |renderer: &Renderer| mean(&output(renderer, "diffuse"));
+    let shown = |renderer: &Renderer| mean(&output(renderer, shown));
     let mut renderer = render_frames(gpu, &scene, &settings, "hpsf", STEP);
     let before = shown(&renderer);
     let frames: Vec<f64> = (0..5)
@@ -103,11 +104,25 @@ fn response(gpu: &Gpu, time: &str) -> Vec<f64> {
 #[test]
 fn the_hybrid_has_nine_tenths_of_a_step_of_the_light_within_four_frames() {
     let gpu = common::gpu();
-    let [hybrid, detect, average, integrate] = ["hybrid", "detect", "average", "integrate"].map(|time| response(&gpu, time));
+    let of_time = |time| response(&gpu, &[("hpsf.time", time)], &floor(4.0).materials[0], "diffuse");
+    let [hybrid, detect, average, integrate] = ["hybrid", "detect", "average", "integrate"].map(of_time);
     for (time, frames) in [("hybrid", hybrid), ("detect", detect)] {
         assert!(frames[..3].iter().any(|&part| part > 0.9), "{time}: {frames:?}");
     }
     assert!(average.iter().chain(&integrate).all(|&part| part < 0.9), "{average:?} {integrate:?}");
+}
+
+/// What glossy lobes show of the light, over a diffuse base and on a metal, smooth and rough: cells of a few pixels' width, told apart by direction.
+#[test]
+fn the_hybrid_has_nine_tenths_of_a_step_of_a_highlight_within_four_frames() {
+    let gpu = common::gpu();
+    for (metallic, roughness) in [(0.0, 0.3), (0.0, 0.8), (1.0, 0.3)] {
+        let material = Material { specular: 1.0, metallic, roughness, ..floor(4.0).materials[0].clone() };
+        let of_time = |time| response(&gpu, &[("hpsf.time", time), ("hpsf.glossy", "on")], &material, "specular");
+        let [hybrid, integrate] = ["hybrid", "integrate"].map(of_time);
+        assert!(hybrid[..3].iter().any(|&part| part > 0.9), "metallic {metallic}, roughness {roughness}: {hybrid:?}");
+        assert!(integrate.iter().all(|&part| part < 0.9), "metallic {metallic}, roughness {roughness}: {integrate:?}");
+    }
 }
 
 /// The light moves above a card with an edge at x = 0 in the middle between it and the floor: the shadow's edge moves the other way, as fast.

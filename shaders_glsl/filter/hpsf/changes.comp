@@ -1,8 +1,9 @@
 // Adds each retraced path to the cell of its filter vertex: filter/hpsf/changes.glsl.
 //
 // A path whose vertex is now nearer or farther by more than a cell has met another surface, in front of the old one or behind it. That
-// tells nothing about the light on either, and is left out.
+// tells nothing about the light on either, and is left out. So are those without the lobes that the table is about.
 #include "filter/hpsf/changes.glsl"
+#include "filter/hpsf/table.glsl"
 #include "lib/elements.glsl"
 #include "paths/retraced.glsl"
 
@@ -16,6 +17,15 @@ void add_fixed(uint at, float value, float dither) {
     uvec2 units = to_fixed(clamp(value, 0.0, parameters.hpsf_largest), dither);
     uint before = atomicAdd(changes.at[at], units.x);
     atomicAdd(changes.at[at + 1u], units.y + (before + units.x < before ? 1u : 0u));
+}
+
+/// Of the lobes that the table is about.
+vec3 radiance_of(Kept path) {
+    return PART == PART_GLOSSY ? path.specular : path.diffuse;
+}
+
+bool has_lobes(uint layer) {
+    return PART == PART_GLOSSY ? layer != 0u : has_diffuse_lobe(layer);
 }
 
 void add_path(CellKey key, vec3 now, vec3 before, float dither) {
@@ -46,14 +56,14 @@ void main() {
     Retraced path = retraced.at[index];
     vec4 numbers = jitter_numbers(pixel, 0u);
     float cell = power_of_two(level_at(before.distance, level_number(numbers)));
-    if (!(path.now.distance > 0.0) || abs(path.now.distance - before.distance) > cell) {
+    if (!(path.now.distance > 0.0) || abs(path.now.distance - before.distance) > cell || !has_lobes(path.layer)) {
         return;
     }
     float view_cosine = dot(camera_ray(frame.previous_camera, pixel, frame.previous_jitter).direction, frame.previous_camera.forward);
     vec3 arrives = unpack_normal(path.incident);
-    FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), arrives, path.now.distance, arrives * view_cosine, 0u);
+    FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), arrives, path.now.distance, arrives * view_cosine, layer_of_part(path.layer));
     float dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
     for (uint level = 0u; level < parameters.hpsf_levels + FURTHER_LEVELS; level++) {
-        add_path(key_of(point, numbers, int(level)), path.now.radiance, before.radiance, dither);
+        add_path(change_key(point, numbers, level), radiance_of(path.now), radiance_of(before), dither);
     }
 }

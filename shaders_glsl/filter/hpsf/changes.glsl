@@ -1,6 +1,7 @@
 // What retraced paths say about the light in a cell: Binder, section 3.4.1, whose averages of differences are in voxels, too.
 //
-// Keys are those of the filter. Of a cell's paths, this table has the sum of their radiance now and that of the same paths in the last
+// Keys are those of the filter, but that cells of glossy lobes are as wide as those of the diffuse one: smooth surfaces' own would hardly have a
+// path each. Of a cell's paths, this table has the sum of their radiance now and that of the same paths in the last
 // frame: both in fixed point, with the same rounding, so that equal light leaves equal bits. Made anew in every frame.
 //
 // Deviations and why: one slot per key, no probing. Where two cells meet in a slot, the second is not known, and the next coarser cell
@@ -18,6 +19,11 @@ const uint FURTHER_LEVELS = 2u;
 
 /// Words of a slot: fingerprint, number of paths, and low and high word of each channel, now and before.
 const uint CHANGE_WORDS = 14u;
+
+/// Of a vertex, `level` levels above that of its distance.
+CellKey change_key(FilterPoint point, vec4 numbers, uint level) {
+    return key_of(point, numbers, int(level) + finer_levels(point.layer));
+}
 
 uint change_slot(CellKey key) {
     return CHANGE_WORDS * hash_slot(hash_index(key, true), CHANGE_CAPACITY);

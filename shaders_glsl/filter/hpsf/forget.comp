@@ -1,8 +1,8 @@
 // Where light has changed, cells forget: Binder, section 3.4.1, the hybrid of temporal filtering and integration.
 //
 // How much is in filter/hpsf/forgetting.glsl. Light that stands still has changed by exactly nothing, and is integrated; at a shadow's edge
-// the relative change is near 1, and what is new is all. Each pixel puts its limit to the cells of its sample before they are merged: the
-// smallest one stands, in whatever order.
+// the relative change is near 1, and what is new is all. Each pixel puts its limit to the cells of its sample before they are merged, and
+// to those that it will look up, where no sample of this frame may have gone: the smallest one stands, in whatever order.
 #include "filter/hpsf/changes.glsl"
 #include "filter/hpsf/find.glsl"
 #include "filter/hpsf/forgetting.glsl"
@@ -19,8 +19,9 @@ layout(set = 1, binding = 4, scalar) readonly buffer Keys { uint at[]; } keys;
 layout(set = 1, binding = 5, scalar) readonly buffer Sums { uint at[]; } sums;
 layout(set = 1, binding = 6, scalar) buffer Cells { uint at[]; } cells;
 layout(set = 1, binding = 7, scalar) buffer Seeds { uint at[]; } seeds;
-/// Relative change of the light at the pixel's vertex, 0..1.
-layout(set = 1, binding = 8, r32f) writeonly uniform image2D hpsf_change;
+/// Relative change of the light in the pixel's cells, 0..1.
+layout(set = 1, binding = 8, r32f) writeonly uniform image2D change;
+layout(set = 1, binding = 9, r32ui) readonly uniform uimage2D filter_layer;
 
 uint key_word(uint at) {
     return keys.at[at];
@@ -52,7 +53,7 @@ Change change_of_key(CellKey key) {
 float change_at(FilterPoint point, vec4 numbers, uint level) {
     Change best = Change(0u, vec3(0.0), vec3(0.0));
     for (; level < parameters.hpsf_levels + FURTHER_LEVELS && best.paths < parameters.hpsf_retraced_few; level++) {
-        Change found = change_of_key(key_of(point, numbers, int(level)));
+        Change found = change_of_key(change_key(point, numbers, level));
         if (found.paths > best.paths) {
             best = found;
         }
@@ -64,15 +65,28 @@ uint new_samples(uint slot) {
     return FLOAT_SUMS ? uint(uintBitsToFloat(sums.at[4u * slot + 3u])) : sums.at[8u * slot + 6u];
 }
 
-void forget(CellKey key, float change) {
+void forget(CellKey key, float relative_change) {
     uint slot = find_slot(key);
     if (slot == NO_SLOT) {
         return;
     }
-    uint limit = past_samples(change, new_samples(slot));
+    uint limit = past_samples(relative_change, max(new_samples(slot), 1u));
     // The age above the count is the same for all.
     atomicMin(cells.at[4u * slot + 3u], cells.at[4u * slot + 3u] & ~MOST_SAMPLES | limit);
     atomicMin(seeds.at[4u * slot + 3u], limit);
+}
+
+/// The cells at one jittered place, of all levels; the greatest change.
+float forget_cells(FilterPoint point, vec4 numbers) {
+    float most = 0.0;
+    for (uint level = 0u; level < parameters.hpsf_levels; level++) {
+        float found = change_at(point, numbers, level);
+        if (found > 0.0) {
+            forget(key_of(point, numbers, int(level)), found);
+        }
+        most = max(most, found);
+    }
+    return most;
 }
 
 void main() {
@@ -81,17 +95,14 @@ void main() {
         return;
     }
     vec4 position = imageLoad(filter_position, pixel);
+    uint layer = layer_of_part(imageLoad(filter_layer, pixel).x);
     float shown = 0.0;
-    if (position.w > 0.0) {
+    if (position.w > 0.0 && (PART != PART_GLOSSY || layer != 0u)) {
         FilterPoint point = filter_point(uvec2(pixel), position, imageLoad(filter_normal, pixel).x, imageLoad(filter_incident, pixel).x);
-        vec4 numbers = jitter_numbers(uvec2(pixel), 0u);
-        for (uint level = 0u; level < parameters.hpsf_levels; level++) {
-            float change = change_at(point, numbers, level);
-            if (change > 0.0) {
-                forget(key_of(point, numbers, int(level)), change);
-            }
-            shown = level == 0u ? change : shown;
+        point.layer = layer;
+        for (uint i = 0u; i <= parameters.hpsf_lookups && (i == 0u || shown > 0.0); i++) {
+            shown = max(shown, forget_cells(point, jitter_numbers(uvec2(pixel), i)));
         }
     }
-    imageStore(hpsf_change, pixel, vec4(shown));
+    imageStore(change, pixel, vec4(shown));
 }

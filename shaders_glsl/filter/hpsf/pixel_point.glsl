@@ -19,7 +19,7 @@ bool find_point(out CellPoint at) {
     }
     vec4 position = imageLoad(filter_position, pixel);
     at.point = filter_point(uvec2(pixel), position, imageLoad(filter_normal, pixel).x, imageLoad(filter_incident, pixel).x);
-    at.point.layer = PART == PART_GLOSSY ? imageLoad(filter_layer, pixel).x : 0u;
+    at.point.layer = layer_of_part(imageLoad(filter_layer, pixel).x);
     at.numbers = jitter_numbers(uvec2(pixel), 0u);
     at.coarser = 0;
     return position.w > 0.0 && (PART != PART_GLOSSY || at.point.layer != 0u);

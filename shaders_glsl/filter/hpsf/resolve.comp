@@ -136,7 +136,7 @@ void main() {
     }
     FilterPoint point = filter_point(uvec2(pixel), position, imageLoad(filter_normal, pixel).x, imageLoad(filter_incident, pixel).x);
     vec4 own = own_sample(pixel);
-    point.layer = PART == PART_GLOSSY ? imageLoad(filter_layer, pixel).x : 0u;
+    point.layer = layer_of_part(imageLoad(filter_layer, pixel).x);
     if (PART == PART_GLOSSY && point.layer == 0u) {
         imageStore(mean, pixel, storable(vec4(own.rgb, variance_of_mean(own.rgb, own.rgb, 0u))));
         imageStore(samples, pixel, uvec4(1u));

@@ -28,6 +28,11 @@ const uint TIME_DETECT = 4u;
 const uint TABLE_PERSISTENT = 0u;
 const uint TABLE_SWAPPED = 1u;
 
+/// Of the lobes that the table is about; 0: the diffuse one.
+uint layer_of_part(uint layer) {
+    return PART == PART_GLOSSY ? layer : 0u;
+}
+
 /// Slots are given in a fixed order (filter/hpsf/ordered.glsl), in which words of a slot differ by more than the key.
 const bool ORDERED = HPSF_INSERTION == 1u || HPSF_EVICTION == 1u;
 const bool EXACT = HPSF_KEYS == KEYS_EXACT && !ORDERED && PART != PART_GLOSSY;
