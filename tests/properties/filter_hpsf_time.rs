@@ -125,6 +125,61 @@ fn the_hybrid_has_nine_tenths_of_a_step_of_a_highlight_within_four_frames() {
     }
 }
 
+/// Frames that a card hides a part of the floor for: fewer than hpsf.age.
+const HIDDEN: u32 = 4;
+
+/// A card of 0.2 m, 0.3 m above the floor, under a light from the left. It comes from far away to hide the middle of the floor, whose cells
+/// remember it lit, and goes on to the left, from where its shadow falls there.
+fn passing_card() -> Scene {
+    let (mut scene, _) = lit_floor(DVec3::new(-4.0, 4.0, 0.0));
+    let card = [[-0.1, 0.0, -0.1], [-0.1, 0.0, 0.1], [0.1, 0.0, 0.1], [0.1, 0.0, -0.1]];
+    scene.meshes.push(Mesh {
+        positions: card.to_vec(),
+        normals: vec![[0.0, 1.0, 0.0]; 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        triangle_materials: vec![0, 0],
+        ..Default::default()
+    });
+    let places = [20.0, 0.0, -0.3, -0.3].map(|x| DVec3::new(x, 0.3, 0.0));
+    scene.nodes.push(node(places[0]));
+    let card = scene.nodes.len() as u32 - 1;
+    scene.instances.push(Instance { mesh: 1, node: card });
+    // A last key far away, since animations begin anew after it.
+    let times = [0, STEP, STEP + HIDDEN, 1000].map(|frame| f64::from(frame) / FRAMES_PER_SECOND).to_vec();
+    let channel = Channel { node: card, times, interpolation: Interpolation::Step, keys: Keys::Translation(places.to_vec()) };
+    scene.animation = Animation::new(vec![channel]);
+    scene
+}
+
+/// Mean over the middle of the picture.
+fn middle(image: &Image) -> f64 {
+    let inside = |i: usize| (28..36).contains(&(i % 64)) && (14..22).contains(&(i / 64));
+    let values = image.pixels.iter().enumerate().filter(|(i, _)| inside(*i)).map(|(_, pixel)| f64::from(pixel[0]));
+    values.sum::<f64>() / 64.0
+}
+
+/// What has been hidden for a while may look different from what its cells remember.
+#[test]
+fn the_hybrid_has_nine_tenths_of_a_shadow_that_fell_while_its_place_was_hidden_within_four_frames() {
+    let gpu = common::gpu();
+    for technique in ["hpsf", "hpsf+"] {
+        let mut settings = with(&[("hpsf.time", "hybrid")]);
+        settings.view = from_above(0.5);
+        let mut renderer = render_frames(&gpu, &passing_card(), &settings, technique, STEP);
+        let lit = middle(&renderer.picture().unwrap());
+        (0..HIDDEN).for_each(|_| renderer.render_frame().unwrap());
+        let mut step = |_| {
+            renderer.render_frame().unwrap();
+            renderer.finish().unwrap();
+            middle(&renderer.picture().unwrap())
+        };
+        let frames: Vec<f64> = (0..8).map(&mut step).collect();
+        let dark = frames[7];
+        assert!(dark < 0.5 * lit, "{technique}: {lit} {dark}");
+        assert!(frames[..3].iter().any(|frame| frame - dark < 0.1 * (lit - dark)), "{technique}: from {lit}, {frames:?}");
+    }
+}
+
 /// The light moves above a card with an edge at x = 0 in the middle between it and the floor: the shadow's edge moves the other way, as fast.
 fn moving_shadow() -> Scene {
     let (mut scene, light) = lit_floor(DVec3::new(0.0, 4.0, 0.0));

@@ -1,7 +1,8 @@
 // Adds each retraced path to the cell of its filter vertex: filter/hpsf/changes.glsl.
 //
 // A path whose vertex is now nearer or farther by more than a cell has met another surface, in front of the old one or behind it. That
-// tells nothing about the light on either, and is left out. So are those without the lobes that the table is about.
+// tells nothing about the light on either, but that something has come into view there: filter/hpsf/forget.comp. Paths without the lobes that
+// the table is about are left out.
 #include "filter/hpsf/changes.glsl"
 #include "filter/hpsf/table.glsl"
 #include "lib/elements.glsl"
@@ -28,11 +29,23 @@ bool has_lobes(uint layer) {
     return PART == PART_GLOSSY ? layer != 0u : has_diffuse_lobe(layer);
 }
 
-void add_path(CellKey key, vec3 now, vec3 before, float dither) {
-    uint slot = change_slot(key);
+/// Whether the slot is the key's.
+bool claim_change(CellKey key, uint slot) {
     uint fingerprint = hash_fingerprint(key);
     uint found = atomicCompSwap(changes.at[slot], NO_FINGERPRINT, fingerprint);
-    if (found != NO_FINGERPRINT && found != fingerprint) {
+    return found == NO_FINGERPRINT || found == fingerprint;
+}
+
+void add_uncovered(CellKey key) {
+    uint slot = change_slot(key);
+    if (claim_change(key, slot)) {
+        atomicAdd(changes.at[slot + UNCOVERED], 1u);
+    }
+}
+
+void add_path(CellKey key, vec3 now, vec3 before, float dither) {
+    uint slot = change_slot(key);
+    if (!claim_change(key, slot)) {
         return;
     }
     atomicAdd(changes.at[slot + 1u], 1u);
@@ -49,19 +62,21 @@ void main() {
         return;
     }
     Kept before = kept.at[index];
-    if (!(before.distance > 0.0)) {
-        return;
-    }
     uvec2 pixel = retraced_pixel(uvec2(index % extent.x, index / extent.x), frame.first_sample - 1u);
     Retraced path = retraced.at[index];
     vec4 numbers = jitter_numbers(pixel, 0u);
     float cell = power_of_two(level_at(before.distance, level_number(numbers)));
-    if (!(path.now.distance > 0.0) || abs(path.now.distance - before.distance) > cell || !has_lobes(path.layer)) {
+    if (!(path.now.distance > 0.0) || !has_lobes(path.layer)) {
         return;
     }
     float view_cosine = dot(camera_ray(frame.previous_camera, pixel, frame.previous_jitter).direction, frame.previous_camera.forward);
     vec3 arrives = unpack_normal(path.incident);
-    FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), arrives, path.now.distance, arrives * view_cosine, layer_of_part(path.layer));
+    uint layer = layer_of_part(path.layer);
+    FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), arrives, path.now.distance, arrives * view_cosine, layer);
+    if (abs(path.now.distance - before.distance) > cell) {
+        add_uncovered(uncovered_key(point, numbers));
+        return;
+    }
     float dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
     for (uint level = 0u; level < parameters.hpsf_levels + FURTHER_LEVELS; level++) {
         add_path(change_key(point, numbers, level), radiance_of(path.now), radiance_of(before), dither);

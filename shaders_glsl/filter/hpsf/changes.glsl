@@ -17,12 +17,19 @@ layout(constant_id = 225) const uint CHANGE_CAPACITY = 1;
 /// Levels coarser than the filter's: retraced paths are few, and a change that is found in a large cell is still one.
 const uint FURTHER_LEVELS = 2u;
 
-/// Words of a slot: fingerprint, number of paths, and low and high word of each channel, now and before.
-const uint CHANGE_WORDS = 14u;
+/// Words of a slot: fingerprint, number of paths, low and high word of each channel, now and before, and number of paths that have come to another
+/// surface.
+const uint CHANGE_WORDS = 15u;
+const uint UNCOVERED = 14u;
 
 /// Of a vertex, `level` levels above that of its distance.
 CellKey change_key(FilterPoint point, vec4 numbers, uint level) {
     return key_of(point, numbers, int(level) + finer_levels(point.layer));
+}
+
+/// Of the cell around a vertex in which paths are counted that have come to another surface.
+CellKey uncovered_key(FilterPoint point, vec4 numbers) {
+    return change_key(point, numbers, parameters.hpsf_levels + FURTHER_LEVELS);
 }
 
 uint change_slot(CellKey key) {

@@ -3,6 +3,10 @@
 // How much is in filter/hpsf/forgetting.glsl. Light that stands still has changed by exactly nothing, and is integrated; at a shadow's edge
 // the relative change is near 1, and what is new is all. Each pixel puts its limit to the cells of its sample before they are merged, and
 // to those that it will look up, where no sample of this frame may have gone: the smallest one stands, in whatever order.
+//
+// What an object uncovers may look different from what its cells remember, without any path that tells so: nobody saw it when it changed. So
+// where retraced paths tell that something has come into view, cells that had no sample in the last frame know nothing. Elsewhere these
+// are cells that the jitter has missed, and keep what they know.
 #include "filter/hpsf/changes.glsl"
 #include "filter/hpsf/find.glsl"
 #include "filter/hpsf/forgetting.glsl"
@@ -49,6 +53,13 @@ Change change_of_key(CellKey key) {
     return Change(changes.at[slot + 1u], sums_at(slot + 2u), sums_at(slot + 8u));
 }
 
+/// Something has come into view around a vertex.
+bool is_uncovered(FilterPoint point, vec4 numbers) {
+    CellKey key = uncovered_key(point, numbers);
+    uint slot = change_slot(key);
+    return changes.at[slot] == hash_fingerprint(key) && changes.at[slot + UNCOVERED] > 0u;
+}
+
 /// At a level, or at the next coarser one where enough paths tell of it.
 float change_at(FilterPoint point, vec4 numbers, uint level) {
     Change best = Change(0u, vec3(0.0), vec3(0.0));
@@ -65,24 +76,27 @@ uint new_samples(uint slot) {
     return FLOAT_SUMS ? uint(uintBitsToFloat(sums.at[4u * slot + 3u])) : sums.at[8u * slot + 6u];
 }
 
-void forget(CellKey key, float relative_change) {
+/// `forgets_unseen`: cells that nobody saw in the last frame know nothing.
+void forget(CellKey key, float relative_change, bool forgets_unseen) {
     uint slot = find_slot(key);
     if (slot == NO_SLOT) {
         return;
     }
-    uint limit = past_samples(relative_change, max(new_samples(slot), 1u));
+    uint known = cells.at[4u * slot + 3u];
+    bool unseen = known > MOST_SAMPLES;
+    uint limit = forgets_unseen && unseen ? 0u : past_samples(relative_change, max(new_samples(slot), 1u));
     // The age above the count is the same for all.
-    atomicMin(cells.at[4u * slot + 3u], cells.at[4u * slot + 3u] & ~MOST_SAMPLES | limit);
+    atomicMin(cells.at[4u * slot + 3u], known & ~MOST_SAMPLES | limit);
     atomicMin(seeds.at[4u * slot + 3u], limit);
 }
 
 /// The cells at one jittered place, of all levels; the greatest change.
-float forget_cells(FilterPoint point, vec4 numbers) {
+float forget_cells(FilterPoint point, vec4 numbers, bool uncovered) {
     float most = 0.0;
     for (uint level = 0u; level < parameters.hpsf_levels; level++) {
         float found = change_at(point, numbers, level);
-        if (found > 0.0) {
-            forget(key_of(point, numbers, int(level)), found);
+        if (found > 0.0 || uncovered) {
+            forget(key_of(point, numbers, int(level)), found, uncovered);
         }
         most = max(most, found);
     }
@@ -100,8 +114,11 @@ void main() {
     if (position.w > 0.0 && (PART != PART_GLOSSY || layer != 0u)) {
         FilterPoint point = filter_point(uvec2(pixel), position, imageLoad(filter_normal, pixel).x, imageLoad(filter_incident, pixel).x);
         point.layer = layer;
-        for (uint i = 0u; i <= parameters.hpsf_lookups && (i == 0u || shown > 0.0); i++) {
-            shown = max(shown, forget_cells(point, jitter_numbers(uvec2(pixel), i)));
+        bool uncovered = false;
+        for (uint i = 0u; i <= parameters.hpsf_lookups && (i == 0u || uncovered || shown > 0.0); i++) {
+            vec4 numbers = jitter_numbers(uvec2(pixel), i);
+            uncovered = uncovered || is_uncovered(point, numbers);
+            shown = max(shown, forget_cells(point, numbers, uncovered));
         }
     }
     imageStore(change, pixel, vec4(shown));

@@ -4,8 +4,8 @@
 //! claim to know. Puts out `hpsf_change` (`hpsf_change_indirect`, `specular_change`), the relative change in each pixel's cells. No history
 //! of its own.
 //!
-//! changes: 80 bytes read per retraced path, and per level 56 updated of a table of as many slots, which is cleared before. forget: 24 bytes
-//! read (of glossy lobes 28) and 4 written per pixel, and per level 56 read and, where there is change, 20 updated for each lookup.
+//! changes: 80 bytes read per retraced path, and per level 60 updated of a table of as many slots, which is cleared before. forget: 24 bytes
+//! read (of glossy lobes 28) and 4 written per pixel, and per level 60 read and, where there is change, 20 updated for each lookup.
 
 use super::{CAPACITY, FLOAT_SUMS, PART, SAMPLE_BITS, Table, sample_bits};
 use crate::frame::FrameBuilder;
@@ -16,11 +16,11 @@ use crate::paths::terms::Terms;
 /// Specialization constant.
 const CHANGE_CAPACITY: u32 = 225;
 
-/// Levels that the shader adds to the filter's.
-const FURTHER_LEVELS: u32 = 2;
+/// Levels that the shader adds to the filter's, that of what comes into view among them.
+const FURTHER_LEVELS: u32 = 3;
 
 /// Bytes per slot.
-const CHANGE: u64 = 56;
+const CHANGE: u64 = 60;
 
 pub(super) fn add(frame: &mut FrameBuilder, table: &Table, terms: &Terms, retraced: Retraced, levels: u32) -> Result<(), GpuError> {
     let slots = retraced.paths * (levels + FURTHER_LEVELS);
