@@ -57,8 +57,24 @@ bool find_pixel(Field field, uint thread, inout uint turn, out uvec2 pixel) {
     return false;
 }
 
-/// Takes a pixel's result, a sum over `samples`; `counts`: its scattered rays and shadow rays. Defined by the kernel.
+/// Takes a pixel's result so far, a sum over `samples`; `counts`: its scattered rays and shadow rays. Defined by the kernel.
 void write_pixel(uvec2 pixel, Terms terms, uint samples, uvec2 counts);
+
+#ifndef SHARED_JITTER
+/// What write_pixel has taken in the submission before, of the same frame. Defined by the kernel.
+void resume_pixel(uvec2 pixel, inout Terms terms, inout uvec2 counts);
+#endif
+
+/// Where a pixel's result begins.
+void begin_pixel(uvec2 pixel, out Terms terms, out uvec2 counts) {
+    terms = no_terms();
+    counts = uvec2(0u);
+#ifndef SHARED_JITTER
+    if (first_sample_here() > 0u) {
+        resume_pixel(pixel, terms, counts);
+    }
+#endif
+}
 
 #ifdef KEEP_ENDS
 /// Takes a pixel's path where it has ended: at `hit`, if it has ended at a surface. Defined by the kernel.
@@ -69,18 +85,19 @@ void keep_end(uvec2 pixel, Path path, Hit hit, Terms terms);
 void trace_pixels(uint group, uint thread) {
     Field field = field_of(group);
     uint turn = 0u;
-    uint sampled = 0u;
+    uint sampled = first_sample_here();
     uvec2 pixel;
     bool paths_left = find_pixel(field, thread, turn, pixel);
-    uint samples = samples_of(pixel);
-    Path path = field_path(field, pixel, 0u);
-    Terms terms = no_terms();
+    uint samples = samples_up_to_here(pixel);
+    Path path = field_path(field, pixel, sampled);
+    Terms terms;
+    uvec2 counts;
+    begin_pixel(pixel, terms, counts);
     Pending pending;
     pending.ray = NO_RAY;
     // Shadow rays that the path's last vertex has yet to send.
     uint shadow_rays = 0u;
     Hit hit;
-    uvec2 counts = uvec2(0u);
     bool ended = false;
     while (paths_left) {
         bool lights = pending.ray.t_max > 0.0;
@@ -115,12 +132,11 @@ void trace_pixels(uint group, uint thread) {
                 keep_end(pixel, path, hit, terms);
 #endif
                 write_pixel(pixel, terms, samples, counts);
-                terms = no_terms();
-                counts = uvec2(0u);
-                sampled = 0u;
+                sampled = first_sample_here();
                 turn++;
                 paths_left = find_pixel(field, thread, turn, pixel);
-                samples = samples_of(pixel);
+                samples = samples_up_to_here(pixel);
+                begin_pixel(pixel, terms, counts);
             }
             path = field_path(field, pixel, sampled);
             ended = false;

@@ -87,6 +87,19 @@ uint samples_of(uvec2 pixel) {
 #endif
 }
 
+/// Of a frame in several submissions: paths of each pixel that earlier ones have traced, and those of a pixel after this one.
+uint first_sample_here() {
+#ifdef SHARED_JITTER
+    return 0u;
+#else
+    return frame.share_begin;
+#endif
+}
+
+uint samples_up_to_here(uvec2 pixel) {
+    return min(samples_of(pixel), frame.share_end);
+}
+
 /// Scattered rays in the low, shadow rays in the high 16 bits.
 uint pack_counts(uvec2 counts) {
     uvec2 most = min(counts, 0xffffu);

@@ -129,6 +129,9 @@ struct Parameters {
     /// Lights drawn by power for each shadow ray, which goes to one of them in proportion to what it would bring unshadowed; at most one for
     /// every four lights of the scene. More: less noise where many lights are near some surfaces and far from others; each costs a BSDF.
     uint light_candidates;
+    //@ paths.per_submission 2097152 1..4294967295 paths
+    /// Paths that the device is asked for at once, but at least one for each pixel: frames of more samples are submitted in shares. The same picture; fewer cost a little, tell progress sooner, and are safer from drivers that end what takes them seconds.
+    uint paths_per_submission;
     //@ paths.clamp 0 0..1000000 W/(sr*m^2)
     /// Largest radiance that one indirect contribution may carry; 0: no clamp. Darkens, and removes fireflies.
     float clamp_radiance;

@@ -198,6 +198,9 @@ struct FrameData {
     /// Samples per pixel of this frame, at least 1; and the share of the pixels that take one more, 0..1.
     uint samples;
     float more_samples;
+    /// Of these, what earlier submissions of the frame have taken, and what all have after this one.
+    uint share_begin;
+    uint share_end;
     /// The frame's origin is at this multiple of 2^log2_origin_step metres from the world's; modulo 2^32.
     int log2_origin_step;
     ivec3 origin_steps;

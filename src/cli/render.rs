@@ -170,12 +170,11 @@ fn render_frames(renderer: &mut Renderer, frames: u32, size: Size, spp: u32, mut
     let samples = u64::from(size.width) * u64::from(size.height) * u64::from(spp);
     let progress = Progress::new("rendering", samples * u64::from(frames), "samples");
     let mut estimated = Instant::now();
-    for _ in 0..frames {
+    for frame in 0..frames {
         if let Some(budget) = budget.as_deref_mut() {
             budget.steer(renderer);
         }
-        renderer.render_frame()?;
-        progress.advance(samples);
+        renderer.render_frame_telling(|part| progress.reach(((f64::from(frame) + part) * samples as f64) as u64))?;
         if estimated.elapsed() > ESTIMATE_EVERY {
             if let Some(error) = renderer.relative_error()? {
                 progress.error_estimate(error);

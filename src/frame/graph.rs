@@ -6,8 +6,10 @@
 use super::globals::Globals;
 use super::pass::{Access, Groups, Hazards, Pass, PassBuilder, Traffic, Use, Work, label};
 use super::resources::{BufferHandle, History, ImageHandle, Parity, Resources};
+use super::share::Share;
 use crate::gpu::{Commands, ComputePipeline, DescriptorSet, Gpu, GpuError, Image, ImageInfo, SetLayout, Timer, load_shader, vk};
 use shader_compiler::Precision;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Declares images, buffers and passes, in the order of the frame.
@@ -20,6 +22,7 @@ pub struct FrameBuilder<'a> {
     pub(super) extent: [u32; 2],
     pub(super) resources: Resources,
     passes: Vec<Pass>,
+    sampling: Range<usize>,
     hazards: Hazards,
     pipelines: Vec<SharedPipeline>,
 }
@@ -51,6 +54,7 @@ impl<'a> FrameBuilder<'a> {
             extent,
             resources: Resources::default(),
             passes: Vec::new(),
+            sampling: 0..0,
             hazards: Hazards::default(),
             pipelines: Vec::new(),
         }
@@ -136,7 +140,7 @@ impl<'a> FrameBuilder<'a> {
         self.push(name, Work::Fill { buffer, word }, Traffic::of(&uses), &uses);
     }
 
-    /// The place of the next pass, for [`Self::repeat_per_sample`].
+    /// The place of the next pass, for [`Self::repeat_per_sample`] and [`Self::share_samples`].
     pub fn next_pass(&self) -> usize {
         self.passes.len()
     }
@@ -144,6 +148,13 @@ impl<'a> FrameBuilder<'a> {
     /// The next pass is all passes from `first` on once more for each further sample per pixel that a frame takes.
     pub fn repeat_per_sample(&mut self, name: &'static str, first: usize) {
         self.passes.push(Pass { name, label: label(name), work: Work::Repeat { first }, barrier: false, traffic: Traffic::default() });
+        self.share_samples(first);
+    }
+
+    /// The passes from `first` up to here take the frame's samples. Where a frame is submitted in shares of them ([`Share`]), each has these
+    /// passes; those in front come with the first share, those behind with the last.
+    pub fn share_samples(&mut self, first: usize) {
+        self.sampling = first..self.passes.len();
     }
 
     pub(super) fn pipeline(&mut self, shader: &'static str, constants: &[(u32, u32)]) -> Result<Arc<ComputePipeline>, GpuError> {
@@ -164,7 +175,8 @@ impl<'a> FrameBuilder<'a> {
     pub fn build(self) -> FrameGraph {
         let indirect = |pass: &Pass| matches!(pass.work, Work::Dispatch { groups: Groups::Indirect(..), .. });
         let reads = if self.passes.iter().any(indirect) { vk::PipelineStageFlags::DRAW_INDIRECT } else { vk::PipelineStageFlags::empty() };
-        FrameGraph { resources: self.resources, passes: self.passes, waiting: STAGES | reads, parity: 0, reset: true }
+        let Self { resources, passes, sampling, .. } = self;
+        FrameGraph { resources, passes, sampling, waiting: STAGES | reads, parity: 0, reset: true }
     }
 }
 
@@ -172,6 +184,8 @@ impl<'a> FrameBuilder<'a> {
 pub struct FrameGraph {
     resources: Resources,
     passes: Vec<Pass>,
+    /// Those that every share of a frame has.
+    sampling: Range<usize>,
     /// What waits at a barrier: sizes of dispatches, too, where passes take them from buffers.
     waiting: vk::PipelineStageFlags,
     /// Of the frame recorded last.
@@ -217,10 +231,11 @@ impl FrameGraph {
         self.reset = true;
     }
 
-    /// All passes in order; the first waits for whatever was recorded or submitted before, builds of acceleration structures included.
-    /// `samples`: per pixel.
-    pub fn record(&mut self, commands: &Commands, globals: &DescriptorSet, timer: &mut Timer, samples: u32) {
-        self.parity ^= 1;
+    /// The share's passes in order; the first waits for whatever was recorded or submitted before, builds of acceleration structures included.
+    pub fn record(&mut self, commands: &Commands, globals: &DescriptorSet, timer: &mut Timer, share: Share) {
+        if share.begins() {
+            self.parity ^= 1;
+        }
         timer.reset(commands);
         commands.barrier(vk::PipelineStageFlags::ALL_COMMANDS, self.waiting);
         if std::mem::take(&mut self.reset) && self.resources.keeps_anything() {
@@ -228,13 +243,18 @@ impl FrameGraph {
             commands.barrier(vk::PipelineStageFlags::TRANSFER, self.waiting);
         }
         timer.mark(commands, 0);
-        for (index, pass) in (1..).zip(&self.passes) {
+        for (index, pass) in self.passes.iter().enumerate() {
             match &pass.work {
-                Work::Repeat { first } => self.record_again(commands, globals, &self.passes[*first..index as usize - 1], samples),
+                _ if !self.belongs_to(share, index) => {}
+                Work::Repeat { first } => self.record_again(commands, globals, &self.passes[*first..index], share.samples()),
                 _ => self.record_pass(commands, globals, pass),
             }
-            timer.mark(commands, index);
+            timer.mark(commands, index as u32 + 1);
         }
+    }
+
+    fn belongs_to(&self, share: Share, pass: usize) -> bool {
+        self.sampling.contains(&pass) || if pass < self.sampling.start { share.begins() } else { share.ends }
     }
 
     fn record_again(&self, commands: &Commands, globals: &DescriptorSet, passes: &[Pass], samples: u32) {

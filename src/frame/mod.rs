@@ -4,8 +4,10 @@ mod globals;
 mod graph;
 mod pass;
 mod resources;
+mod share;
 
 pub use globals::{Globals, GlobalsInfo, STRUCTURE_TEXELS, TOP_LEVEL};
 pub use graph::{FrameBuilder, FrameGraph};
 pub use pass::{MOST_GROUPS, PassBuilder, Traffic};
 pub use resources::{BufferHandle, History, ImageHandle, Resource};
+pub use share::{Share, shares};

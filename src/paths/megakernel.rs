@@ -3,7 +3,8 @@
 //! with the vertices behind the filter vertex (megakernel_vertices.comp).
 //!
 //! Takes the scene. Also returns `ray_count`: scattered rays in the low, shadow rays in the high 16 bits. No history. Writes 20 bytes per
-//! pixel, or 128 with terms (12 and 80 at fp16), 28 of them for the filter vertex; traces up to 2 (bounces + 1) + 1 rays per sample.
+//! pixel, or 128 with terms (12 and 80 at fp16), 28 of them for the filter vertex; traces up to 2 (bounces + 1) + 1 rays per sample. Radiance
+//! keeps 16 more, which only frames in several submissions touch.
 
 use super::terms::Terms;
 use super::tiles;
@@ -22,6 +23,8 @@ const RETRACED: u64 = 52;
 
 /// Bytes (shaders_glsl/paths/end.glsl).
 const END: u64 = 48;
+/// Bytes of what one submission leaves to the next (megakernel.comp).
+const SUM: u64 = 16;
 
 /// Tiles of 8x4 pixels that a workgroup works off, one pixel per thread and tile. More of them keep more threads busy while long paths
 /// go on; fewer keep more workgroups for wide devices.
@@ -40,9 +43,12 @@ fn groups_for(frame: &FrameBuilder, extent: [u32; 2]) -> u32 {
 pub fn add(frame: &mut FrameBuilder) -> Result<ImageHandle, GpuError> {
     let radiance = frame.color_image("radiance")?;
     let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
+    let sums = frame.buffer("sums over samples", SUM * u64::from(frame.pixels()))?;
     let (per_group, groups) = (tiles_per_group(frame), groups_for(frame, frame.extent()));
+    let first = frame.next_pass();
     let pass = frame.pass("megakernel", "paths/megakernel").constant(TILES, per_group).groups(groups);
-    pass.writes("radiance", radiance).writes("ray_count", ray_count).add()?;
+    pass.writes("radiance", radiance).writes("ray_count", ray_count).updates("sums", sums).touching(0).add()?;
+    frame.share_samples(first);
     Ok(radiance)
 }
 

@@ -5,7 +5,7 @@ use super::prepared::PreparedScene;
 use super::settings::{RenderError, Settings};
 use super::timings::{Clock, MemoryUse, RayCounts, Recorder, Timings};
 use crate::display;
-use crate::frame::{FrameBuilder, FrameGraph, Globals, GlobalsInfo, ImageHandle};
+use crate::frame::{FrameBuilder, FrameGraph, Globals, GlobalsInfo, ImageHandle, Share, shares};
 use crate::gpu::{DescriptorSet, FrameRing, Gpu, Image, Timer, vk};
 use crate::paths::gbuffer;
 use crate::scene::Scene;
@@ -18,6 +18,8 @@ const FRAMES_IN_FLIGHT: usize = 2;
 pub struct Renderer {
     ring: FrameRing,
     timers: Vec<Timer>,
+    /// Of each slot's last submission: it was the last one of its frame.
+    ends: [bool; FRAMES_IN_FLIGHT],
     graph: FrameGraph,
     picture: ImageHandle,
     globals: Globals,
@@ -63,6 +65,7 @@ impl Renderer {
         Ok(Self {
             ring: FrameRing::new(gpu, FRAMES_IN_FLIGHT)?,
             timers: (0..FRAMES_IN_FLIGHT).map(|_| Timer::new(gpu, graph.marks())).collect::<Result<_, _>>()?,
+            ends: [false; FRAMES_IN_FLIGHT],
             recorder: Recorder::new(graph.pass_names()),
             parameters: settings.parameters.fields(),
             frame: 0,
@@ -78,31 +81,54 @@ impl Renderer {
         })
     }
 
-    /// Records and submits the next frame; waits only for the frame before the last.
+    /// Records and submits the next frame; waits only for the submission before the last.
     ///
     /// # Errors
     /// The device is lost.
     pub fn render_frame(&mut self) -> Result<(), RenderError> {
-        let slot = self.ring.acquire()?;
-        self.collect(slot);
-        let mut clock = Clock::start();
-        if self.frame > 0 && self.moves() {
-            self.advance_pose()?;
+        self.render_frame_telling(|_| {})
+    }
+
+    /// The same. A frame of many samples takes several submissions (`paths.per_submission`): `progress` is told after each of them what part of
+    /// the frame has been submitted, up to 1.
+    ///
+    /// # Errors
+    /// The device is lost.
+    pub fn render_frame_telling(&mut self, mut progress: impl FnMut(f64)) -> Result<(), RenderError> {
+        let (samples, mut cpu_ms) = (self.samples.ceil() as u32, 0.0);
+        for share in shares(self.samples, self.most_samples_at_once()) {
+            let slot = self.ring.acquire()?;
+            self.collect(slot);
+            let mut clock = Clock::start();
+            if share.begins() && self.frame > 0 && self.moves() {
+                self.advance_pose()?;
+            }
+            self.submit(slot, share)?;
+            cpu_ms += clock.lap();
+            progress(f64::from(share.end) / f64::from(samples));
         }
-        let PreparedScene { placed, pose, scene, .. } = &mut self.prepared;
-        placed.write(slot, scene, pose);
-        self.globals.write(slot, &self.frame_data(slot), &self.parameters);
-        let PreparedScene { structure, pose, .. } = &mut self.prepared;
-        let (instances, graph, set, timer) = (pose.instances(), &mut self.graph, self.globals.set(slot), &mut self.timers[slot]);
-        let samples = self.samples.ceil() as u32;
-        self.ring.submit(slot, |commands| {
-            structure.update(commands, slot, instances);
-            graph.record(commands, set, timer, samples);
-        })?;
-        self.recorder.add_cpu(clock.lap());
+        self.recorder.add_cpu(cpu_ms);
         self.first_sample = self.first_sample.wrapping_add(samples);
         self.frame += 1;
         Ok(())
+    }
+
+    fn most_samples_at_once(&self) -> u32 {
+        let [width, height] = self.settings.extent;
+        (u64::from(self.parameters.paths_per_submission) / (u64::from(width) * u64::from(height))).max(1) as u32
+    }
+
+    fn submit(&mut self, slot: usize, share: Share) -> Result<(), RenderError> {
+        let PreparedScene { placed, pose, scene, .. } = &mut self.prepared;
+        placed.write(slot, scene, pose);
+        self.globals.write(slot, &self.frame_data(slot, share), &self.parameters);
+        let PreparedScene { structure, pose, .. } = &mut self.prepared;
+        let (instances, graph, set, timer) = (pose.instances(), &mut self.graph, self.globals.set(slot), &mut self.timers[slot]);
+        self.ends[slot] = share.ends;
+        Ok(self.ring.submit(slot, |commands| {
+            structure.update(commands, slot, instances);
+            graph.record(commands, set, timer, share);
+        })?)
     }
 
     /// Begins anew with other random numbers, at frame `first_frame` of the animation: no frame before it has any effect on the pictures
@@ -202,7 +228,7 @@ impl Renderer {
         Ok(pose.advance(scene, time, |world| self.settings.view.at(scene, world))?)
     }
 
-    fn frame_data(&self, slot: usize) -> FrameData {
+    fn frame_data(&self, slot: usize, share: Share) -> FrameData {
         let [camera, previous_camera] = self.prepared.pose.cameras(self.settings.extent);
         let (origin_steps, log2_origin_step) = self.prepared.pose.origin_steps();
         let mut data = FrameData {
@@ -216,6 +242,8 @@ impl Renderer {
             previous_jitter: self.jitter(self.frame.saturating_sub(1)),
             samples: self.samples as u32,
             more_samples: self.samples.fract() as f32,
+            share_begin: share.begin,
+            share_end: share.end,
             log2_origin_step,
             origin_steps,
             ..Default::default()
@@ -230,7 +258,7 @@ impl Renderer {
     }
 
     fn collect(&mut self, slot: usize) {
-        self.recorder.add_gpu(self.timers[slot].take());
+        self.recorder.add_gpu(self.timers[slot].take(), self.ends[slot]);
     }
 
     fn read_image(&self, image: &Image) -> Result<display::Image, RenderError> {

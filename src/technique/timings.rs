@@ -21,6 +21,8 @@ pub struct Recorder {
     passes: Vec<Vec<f64>>,
     frames: Vec<f64>,
     cpu: Vec<f64>,
+    /// Of the frame of which not all submissions are known yet: each name's, zero before the first one.
+    partial: Vec<f64>,
 }
 
 /// `--timings`. Times are milliseconds.
@@ -115,20 +117,21 @@ impl Recorder {
         };
         let places = passes.map(place).collect();
         let room = || Vec::with_capacity(FRAMES_WITHOUT_ALLOCATION);
-        Self { passes: names.iter().map(|_| room()).collect(), names, places, frames: room(), cpu: room() }
+        let (passes, partial) = (names.iter().map(|_| room()).collect(), vec![0.0; names.len()]);
+        Self { passes, partial, names, places, frames: room(), cpu: room() }
     }
 
-    /// GPU times of one frame, one per pass, or none where the device has no timestamps.
-    pub fn add_gpu(&mut self, milliseconds: impl Iterator<Item = f64>) {
-        let mut total = None;
+    /// GPU times of one submission, one per pass, or none where the device has no timestamps; `ends`: it was its frame's last.
+    pub fn add_gpu(&mut self, milliseconds: impl Iterator<Item = f64>, ends: bool) {
+        let mut any = false;
         for (&place, ms) in self.places.iter().zip(milliseconds) {
-            if total.is_none() {
-                self.passes.iter_mut().for_each(|pass| pass.push(0.0));
-            }
-            *self.passes[place].last_mut().expect("pushed before the first pass") += ms;
-            *total.get_or_insert(0.0) += ms;
+            self.partial[place] += ms;
+            any = true;
         }
-        self.frames.extend(total);
+        if any && ends {
+            self.frames.push(self.partial.iter().sum());
+            self.passes.iter_mut().zip(&mut self.partial).for_each(|(pass, ms)| pass.push(std::mem::take(ms)));
+        }
     }
 
     pub fn last_frame_ms(&self) -> Option<f64> {
@@ -222,9 +225,19 @@ mod tests {
     #[test]
     fn passes_of_one_name_add_up() {
         let mut recorder = Recorder::new(["trace", "shade", "trace"].into_iter());
-        recorder.add_gpu([].into_iter());
-        recorder.add_gpu([1.0, 2.0, 4.0].into_iter());
+        recorder.add_gpu([].into_iter(), true);
+        recorder.add_gpu([1.0, 2.0, 4.0].into_iter(), true);
         assert_eq!((recorder.names, recorder.passes, recorder.frames), (vec!["trace", "shade"], vec![vec![5.0], vec![2.0]], vec![7.0]));
+    }
+
+    #[test]
+    fn submissions_of_a_frame_add_up() {
+        let mut recorder = Recorder::new(["trace", "write"].into_iter());
+        recorder.add_gpu([1.0, 0.0].into_iter(), false);
+        assert_eq!(recorder.last_frame_ms(), None);
+        recorder.add_gpu([2.0, 4.0].into_iter(), true);
+        recorder.add_gpu([8.0, 1.0].into_iter(), true);
+        assert_eq!((recorder.passes, recorder.frames), (vec![vec![3.0, 8.0], vec![4.0, 1.0]], vec![7.0, 9.0]));
     }
 
     #[test]

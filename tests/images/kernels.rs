@@ -1,6 +1,6 @@
-//! The wavefront makes the megakernel's picture: the same paths by the same steps, value by value.
+//! The wavefront makes the megakernel's picture: the same paths by the same steps, value by value. So does either in several submissions.
 
-use crate::common::render::{builtin, output, set, settings, wall};
+use crate::common::render::{builtin, output, render, set, settings, wall};
 use crate::common::{self, TestGpu};
 use glam::{DMat4, DVec3};
 use pathspace::scene::{AlphaMode, CameraView, Environment, Instance, Light, LightKind, Local, Material, Node, Scene};
@@ -66,6 +66,30 @@ fn everything() -> Scene {
     scene.materials.extend([blend.clone(), Material { alpha_mode: AlphaMode::Opaque, emission: [0.5, 0.2, 0.1], ..blend }]);
     scene.environment = Environment::Constant([0.2, 0.3, 0.4]);
     scene
+}
+
+/// Sums are carried on in the order of the samples, and their sequence goes on: no bit differs. 40 samples are the 40 frames of one each.
+#[test]
+fn a_frame_in_several_submissions_is_the_frame_in_one() {
+    let gpu = common::gpu();
+    let scene = builtin("cornell");
+    for kernel in ["megakernel", "wavefront"] {
+        for (samples, most) in [(40.0, 16), (2.5, 1), (3.25, 2)] {
+            let [whole, shared] = [1 << 20, 27 * 18 * most].map(|paths: u32| {
+                let mut settings = settings(27, 18);
+                set(&mut settings, &[("paths.per_submission", &paths.to_string())]);
+                outputs(&gpu, &scene, &settings, kernel, samples)
+            });
+            assert_eq!(whole, shared, "{kernel}, {samples} samples, {most} at once");
+        }
+        let mut shared = settings(27, 18);
+        set(&mut shared, &[("paths.kernel", kernel), ("paths.per_submission", "1")]);
+        let frames = render(&gpu, &scene, &shared, 40).mean;
+        let frame = render(&gpu, &scene, &Settings { spp: 40, ..shared }, 1).mean;
+        let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 40.0 * f32::EPSILON * a.abs();
+        let differing = frame.pixels.iter().flatten().zip(frames.pixels.iter().flatten()).filter(|&pair| differs(pair)).count();
+        assert_eq!(differing, 0, "{kernel}: more than rounding");
+    }
 }
 
 fn view() -> ViewChoice {
