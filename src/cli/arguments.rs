@@ -74,6 +74,11 @@ pub fn png(text: &str) -> Result<PathBuf, String> {
     with_extension(text, &["png"])
 }
 
+/// A binary glTF file to write.
+pub fn glb(text: &str) -> Result<PathBuf, String> {
+    with_extension(text, &["glb"])
+}
+
 /// An environment map to read.
 pub fn environment(text: &str) -> Result<PathBuf, String> {
     with_extension(text, &["exr", "hdr"])

@@ -3,7 +3,7 @@
 mod summary;
 
 use self::summary::Summary;
-use super::{Outcome, output};
+use super::{Outcome, arguments, output};
 use crate::scene::{builtin, source};
 use anyhow::bail;
 use std::io::Write;
@@ -19,7 +19,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     /// Write a built-in scene as a .glb that other renderers read
-    #[arg(long, value_name = "OUT.glb")]
+    #[arg(long, value_name = "OUT.glb", value_parser = arguments::glb)]
     export: Option<PathBuf>,
 }
 

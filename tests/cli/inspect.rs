@@ -24,6 +24,15 @@ fn an_exported_scene_is_the_scene() {
 }
 
 #[test]
+fn an_export_that_is_no_glb_is_refused_before_anything_is_written() {
+    let directory = tempfile::tempdir().unwrap();
+    for name in ["box.obj", "box.gltf", "box", "glb"] {
+        assert_refused(directory.path(), &["inspect", "cornell", "--export", name], &[name, ".glb"]);
+    }
+    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
+}
+
+#[test]
 fn scenes_that_cannot_be_read_are_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = |name: &str| directory.path().join(name);
