@@ -116,7 +116,7 @@ float sphere_pdf(vec3 to_centre, float radius) {
     return distance2 <= radius2 ? UNIFORM_SPHERE_PDF : cone_pdf(one_minus_cos_from_sin2(radius2 / distance2));
 }
 
-bool sample_sphere_light(Light light, vec3 position, vec2 u, inout LightSample result) {
+bool sample_sphere_light(PunctualLight light, vec3 position, vec2 u, inout LightSample result) {
     vec3 to_centre = light.position - position;
     float distance2 = dot(to_centre, to_centre);
     float radius2 = light.radius * light.radius;
@@ -133,9 +133,9 @@ bool sample_sphere_light(Light light, vec3 position, vec2 u, inout LightSample r
     return result.distance > 0.0;
 }
 
-bool sample_punctual_light(Light light, vec3 position, inout LightSample result) {
+bool sample_punctual_light(uint kind, PunctualLight light, vec3 position, inout LightSample result) {
     result.delta = true;
-    if (light.kind == LIGHT_DIRECTIONAL) {
+    if (kind == LIGHT_DIRECTIONAL) {
         result.direction = -light.direction;
         result.radiance = light.emission;
         return true;
@@ -148,7 +148,7 @@ bool sample_punctual_light(Light light, vec3 position, inout LightSample result)
     result.distance = sqrt(distance2);
     result.direction = to_light / result.distance;
     result.radiance = light.emission * (range_window(result.distance, light.inverse_range) / distance2);
-    if (light.kind == LIGHT_SPOT) {
+    if (kind == LIGHT_SPOT) {
         float falloff = clamp(dot(-result.direction, light.direction) * light.cone_scale + light.cone_offset, 0.0, 1.0);
         result.radiance *= falloff * falloff;
     }
@@ -227,13 +227,14 @@ bool sample_light(vec3 position, vec4 u, out LightSample result) {
     if (EFFECT_EMISSIVE_LIGHT && light.kind == LIGHT_TRIANGLE) {
         return sample_triangle_light(light, position, u.zw, result);
     }
-    if (EFFECT_SPHERE_LIGHT && light.kind == LIGHT_SPHERE) {
-        return sample_sphere_light(light, position, u.zw, result);
-    }
     if (EFFECT_ENVIRONMENT_LIGHT && light.kind == LIGHT_ENVIRONMENT) {
         return sample_environment(u.zw, result);
     }
-    return EFFECT_PUNCTUAL_LIGHT && sample_punctual_light(light, position, result);
+    PunctualLightBuffer punctual = PunctualLightBuffer(frame.punctual_lights);
+    if (EFFECT_SPHERE_LIGHT && light.kind == LIGHT_SPHERE) {
+        return sample_sphere_light(punctual.at[result.light], position, u.zw, result);
+    }
+    return EFFECT_PUNCTUAL_LIGHT && sample_punctual_light(light.kind, punctual.at[result.light], position, result);
 }
 
 /// Whether a hit triangle shines back along a ray's unit `direction`, and the density, 1/sr, with which sample_light finds that point
@@ -261,8 +262,9 @@ bool intersect_sphere_lights(Ray ray, out float t, out uint light_index) {
         if (LightBuffer(frame.lights).at[i].kind != LIGHT_SPHERE) {
             break;
         }
-        vec3 to_centre = LightBuffer(frame.lights).at[i].position - ray.origin;
-        float hit = intersect_sphere(to_centre, ray.direction, LightBuffer(frame.lights).at[i].radius);
+        PunctualLightBuffer spheres = PunctualLightBuffer(frame.punctual_lights);
+        vec3 to_centre = spheres.at[i].position - ray.origin;
+        float hit = intersect_sphere(to_centre, ray.direction, spheres.at[i].radius);
         if (hit > ray.t_min && hit < t) {
             t = hit;
             light_index = i;
@@ -273,8 +275,8 @@ bool intersect_sphere_lights(Ray ray, out float t, out uint light_index) {
 
 /// Radiance of a sphere light that a ray met at `distance`, and the density, 1/sr, with which sample_light finds that direction.
 vec3 sphere_light_radiance(uint light_index, vec3 origin, float distance, out float pdf) {
-    Light light = LightBuffer(frame.lights).at[light_index];
-    pdf = light.probability * sphere_pdf(light.position - origin, light.radius);
+    PunctualLight light = PunctualLightBuffer(frame.punctual_lights).at[light_index];
+    pdf = LightBuffer(frame.lights).at[light_index].probability * sphere_pdf(light.position - origin, light.radius);
     return light.emission * range_window(distance, light.inverse_range);
 }
 

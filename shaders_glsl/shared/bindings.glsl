@@ -16,6 +16,7 @@ layout(buffer_reference, scalar) readonly buffer MeshBuffer { Mesh at[]; };
 layout(buffer_reference, scalar) readonly buffer InstanceBuffer { Instance at[]; };
 layout(buffer_reference, scalar) readonly buffer MaterialBuffer { Material at[]; };
 layout(buffer_reference, scalar) readonly buffer LightBuffer { Light at[]; };
+layout(buffer_reference, scalar) readonly buffer PunctualLightBuffer { PunctualLight at[]; };
 layout(buffer_reference, scalar) readonly buffer AliasBuffer { AliasEntry at[]; };
 layout(buffer_reference, scalar) readonly buffer VertexAttributesBuffer { VertexAttributes at[]; };
 layout(buffer_reference, scalar) readonly buffer FloatBuffer { float at[]; };

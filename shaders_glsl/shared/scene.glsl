@@ -102,7 +102,7 @@ const uint MATERIAL_DOUBLE_SIDED = 4u;
 const uint MATERIAL_UNLIT = 8u;
 const uint MATERIAL_EMISSIVE = 16u;
 
-/// One light to choose from: 80 bytes.
+/// One light to choose from: 16 bytes, for there may be as many as triangles.
 struct Light {
     /// LIGHT_* kind.
     uint kind;
@@ -111,7 +111,11 @@ struct Light {
     /// Emissive triangle: instance and its primitive.
     uint instance;
     uint primitive;
-    /// Radiance (triangle, sphere), W/sr (point, spot), W/m^2 (directional).
+};
+
+/// What else there is to a light that is neither a triangle nor the environment. Such come first, so that both have one index.
+struct PunctualLight {
+    /// Radiance (sphere), W/sr (point, spot), W/m^2 (directional).
     vec3 emission;
     /// Metres; 0: a point.
     float radius;
@@ -124,7 +128,6 @@ struct Light {
     /// Spot: attenuation = clamp(cos * cone_scale + cone_offset, 0, 1)^2.
     float cone_scale;
     float cone_offset;
-    uint padding[3];
 };
 
 const uint LIGHT_TRIANGLE = 0u;
@@ -164,6 +167,7 @@ struct FrameData {
     Address instances;
     Address materials;
     Address lights;
+    Address punctual_lights;
     Address light_alias;
     /// AliasEntry per texel of the environment map, or 0.
     Address environment_alias;

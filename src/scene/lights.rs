@@ -14,6 +14,8 @@ use std::f64::consts::PI;
 /// Device data of all lights.
 pub struct LightTable {
     lights: Vec<shared::Light>,
+    /// The rest of the first of them.
+    punctual_lights: Vec<shared::PunctualLight>,
     alias: Vec<AliasEntry>,
     /// Watts, mean of the channels, of each light.
     powers: Vec<f64>,
@@ -45,7 +47,8 @@ impl LightTable {
     pub fn new(scene: &Scene, environment_integral: f64) -> Self {
         let mut punctual: Vec<u32> = (0..scene.lights.len() as u32).collect();
         punctual.sort_by_key(|&light| !matches!(scene.lights[light as usize].kind, LightKind::Sphere { .. }));
-        let mut lights: Vec<shared::Light> = punctual.iter().map(|&light| punctual_light(&scene.lights[light as usize])).collect();
+        let (mut lights, punctual_lights): (Vec<_>, Vec<_>) =
+            punctual.iter().map(|&light| punctual_light(&scene.lights[light as usize])).unzip();
         let environment_light = if environment_integral > 0.0 { lights.len() as u32 } else { u32::MAX };
         if environment_integral > 0.0 {
             lights.push(shared::Light { kind: shared::LIGHT_ENVIRONMENT, ..Default::default() });
@@ -65,7 +68,7 @@ impl LightTable {
         }
         let powers = vec![0.0; lights.len()];
         let (alias, builder) = (Vec::with_capacity(lights.len()), AliasBuilder::default());
-        Self { lights, alias, powers, builder, punctual, environment_light, environment_integral, emitters, instances }
+        Self { lights, punctual_lights, alias, powers, builder, punctual, environment_light, environment_integral, emitters, instances }
     }
 
     /// Places all lights by `world`, the world matrix of each node, relative to `origin`, in a scene of `radius` metres, and chooses by their
@@ -73,7 +76,7 @@ impl LightTable {
     pub fn refresh(&mut self, scene: &Scene, world: &[DMat4], origin: DVec3, radius: f64) {
         for (slot, &light) in self.punctual.iter().enumerate() {
             let light = &scene.lights[light as usize];
-            place(&mut self.lights[slot], &world[light.node as usize], origin);
+            place(&mut self.punctual_lights[slot], &world[light.node as usize], origin);
             self.powers[slot] = punctual_power(light, radius);
         }
         if let Some(power) = self.powers.get_mut(self.environment_light as usize) {
@@ -99,6 +102,11 @@ impl LightTable {
 
     pub fn lights(&self) -> &[shared::Light] {
         &self.lights
+    }
+
+    /// What else there is to the first of them, those that are neither triangles nor the environment.
+    pub fn punctual_lights(&self) -> &[shared::PunctualLight] {
+        &self.punctual_lights
     }
 
     pub fn alias(&self) -> &[AliasEntry] {
@@ -155,33 +163,33 @@ fn triangle_area(mesh: &Mesh, primitive: u32, linear: &DMat3) -> f64 {
 }
 
 /// All but where it is and how likely.
-fn punctual_light(light: &super::Light) -> shared::Light {
-    let mut packed = shared::Light {
+fn punctual_light(light: &super::Light) -> (shared::Light, shared::PunctualLight) {
+    let mut packed = shared::PunctualLight {
         emission: light.color,
         inverse_range: light.range.map_or(0.0, |range| 1.0 / range),
         direction: [0.0, -1.0, 0.0],
         ..Default::default()
     };
-    match light.kind {
-        LightKind::Point => packed.kind = shared::LIGHT_POINT,
-        LightKind::Directional => packed.kind = shared::LIGHT_DIRECTIONAL,
+    let kind = match light.kind {
+        LightKind::Point => shared::LIGHT_POINT,
+        LightKind::Directional => shared::LIGHT_DIRECTIONAL,
         LightKind::Sphere { radius } => {
-            packed.kind = shared::LIGHT_SPHERE;
             packed.radius = radius;
             packed.emission = light.color.map(|channel| (f64::from(channel) / (PI * f64::from(radius).powi(2))) as f32);
+            shared::LIGHT_SPHERE
         }
         // KHR_lights_punctual, "Inner and Outer Cone Angles".
         LightKind::Spot { inner_cone_angle, outer_cone_angle } => {
             let (inner, outer) = (inner_cone_angle.cos(), outer_cone_angle.cos());
-            packed.kind = shared::LIGHT_SPOT;
             packed.cone_scale = 1.0 / (inner - outer).max(1e-3);
             packed.cone_offset = -outer * packed.cone_scale;
+            shared::LIGHT_SPOT
         }
-    }
-    packed
+    };
+    (shared::Light { kind, ..Default::default() }, packed)
 }
 
-fn place(light: &mut shared::Light, world: &DMat4, origin: DVec3) {
+fn place(light: &mut shared::PunctualLight, world: &DMat4, origin: DVec3) {
     light.position = (world.w_axis.truncate() - origin).as_vec3().to_array();
     if let Some(direction) = (-world.z_axis.truncate()).try_normalize() {
         light.direction = direction.as_vec3().to_array();
@@ -267,7 +275,7 @@ mod tests {
     #[test]
     fn a_sphere_light_has_the_radiance_of_its_intensity_and_follows_its_node() {
         let table = refreshed(&scene(), [DMat4::from_translation(DVec3::new(11.0, 2.0, 0.0)), DMat4::IDENTITY]);
-        let sphere = table.lights()[0];
+        let sphere = table.punctual_lights()[0];
         assert!((f64::from(sphere.emission[2]) - 3.0 / (PI * 0.25)).abs() < 1e-6);
         assert_eq!(sphere.position, [1.0, 2.0, 0.0]);
         assert_eq!(sphere.direction, [0.0, 0.0, -1.0]);

@@ -21,6 +21,7 @@ pub struct PlacedScene {
 struct Slot {
     instances: Buffer,
     lights: Buffer,
+    punctual_lights: Buffer,
     alias: Buffer,
     /// Of the pose that was last written.
     written: Option<u64>,
@@ -34,6 +35,7 @@ impl PlacedScene {
             Ok(Slot {
                 instances: host_visible::<shared::Instance>(gpu, "instances", scene.instances.len())?,
                 lights: host_visible::<shared::Light>(gpu, "lights", lights.lights().len())?,
+                punctual_lights: host_visible::<shared::PunctualLight>(gpu, "punctual lights", lights.punctual_lights().len())?,
                 alias: host_visible::<shared::AliasEntry>(gpu, "light alias table", lights.lights().len())?,
                 written: None,
             })
@@ -72,6 +74,7 @@ impl PlacedScene {
         self.lights.refresh(scene, pose.world(), pose.origin(), pose.radius());
         fill(&mut slot.instances, pose.instances());
         fill(&mut slot.lights, self.lights.lights());
+        fill(&mut slot.punctual_lights, self.lights.punctual_lights());
         fill(&mut slot.alias, self.lights.alias());
     }
 
@@ -80,6 +83,7 @@ impl PlacedScene {
         let slot = &self.slots[slot];
         data.instances = slot.instances.address();
         data.lights = slot.lights.address();
+        data.punctual_lights = slot.punctual_lights.address();
         data.light_alias = slot.alias.address();
         data.light_count = self.lights.count();
         data.environment_light = self.lights.environment_light();

@@ -154,6 +154,7 @@ fn lit(gpu: &Gpu, scene: &Scene) -> Lit {
         instances: upload(bytemuck::cast_slice(&instances)),
         materials: upload(bytemuck::cast_slice(&materials)),
         lights: upload(bytemuck::cast_slice(table.lights())),
+        punctual_lights: upload(bytemuck::cast_slice(table.punctual_lights())),
         light_alias: upload(bytemuck::cast_slice(table.alias())),
         environment_alias: upload(bytemuck::cast_slice(&distribution.alias)),
         environment_texels: upload(bytemuck::cast_slice(&distribution.texels)),
