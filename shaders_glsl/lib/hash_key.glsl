@@ -4,6 +4,13 @@
 // world's zero, not from the frame's origin: coordinates are integers modulo 2^32, the origin's part of them is exact, and so
 // they stay when the origin moves, wherever the scene is.
 //
+// The grid is shifted by a third of a cell along each axis at even levels, and by two thirds at odd ones (Chan, "Approximate Nearest Neighbor
+// Queries Revisited", 1998): floors at zero, and whatever else is built to round measures, would lie in borders of cells of all levels, where
+// rounding gives every sample to either side by chance, so that each cell has half of them, and other ones with each driver. With
+// thirds, cells of a level still are made of eight of the one below. Measured (hpsf, relMSE): `material`, whose floor is such a plane, at 128x72
+// 0.269 to 0.248 in one frame, 0.176 to 0.160 after 16; cornell at 32x18 with cells of 4 pixels, without jitter, after 256 frames
+// 0.0073 to 0.0029.
+//
 // Deviations and why: floor instead of Meijer's conversion to int, which would make the cells around zero twice as wide. The exponent is
 // taken from the bits, as Meijer does, but is part of both hashes: equal coordinates of two levels are different cells. Normals are
 // turned by a fixed rotation before they are quantised, because the axes, the commonest normals of all, would lie on borders
@@ -33,18 +40,28 @@ int level_of_width(float width) {
     return clamp(int((floatBitsToUint(width) >> 23) & 0xffu) - 127, -100, 100);
 }
 
-/// floor((local + steps 2^log2_step) / 2^level) modulo 2^32. Exact for cells up to the step; larger ones round like the sum.
+bool is_odd(int level) {
+    return (level & 1) == 1;
+}
+
+/// floor(x + 1/3) at even levels, floor(x + 2/3) at odd ones, also where a float has no digits left for the sum.
+int shifted_floor(float x, int level) {
+    float whole = floor(x);
+    return int(whole) + (x - whole >= (is_odd(level) ? 1.0 / 3.0 : 2.0 / 3.0) ? 1 : 0);
+}
+
+/// shifted_floor((local + steps 2^log2_step) / 2^level) modulo 2^32. Exact for cells up to the step; larger ones round like the sum.
 int cell_coordinate(float local, int steps, int log2_step, int level) {
     // Beyond 2^30 cells positions have long lost the digits that would tell cells apart.
     float scaled = clamp(local * power_of_two(-level), -1073741824.0, 1073741824.0);
     int finer = log2_step - level;
     if (finer >= 0) {
-        return int(floor(scaled)) + (finer < 32 ? steps << finer : 0);
+        return shifted_floor(scaled, level) + (finer < 32 ? steps << finer : 0);
     }
     int coarser = min(-finer, 30);
     int whole = steps >> coarser;
     int rest = steps - (whole << coarser);
-    return whole + int(floor(scaled + float(rest) * power_of_two(-coarser)));
+    return whole + shifted_floor(scaled + float(rest) * power_of_two(-coarser), level);
 }
 
 ivec3 cell_of(vec3 local, ivec3 steps, int log2_step, int level) {
@@ -76,12 +93,13 @@ vec3 middle_of_normals(uint normal, uint bits) {
 
 /// The cell of the next coarser level that this one is part of.
 CellKey parent_of(CellKey key) {
-    return CellKey(key.cell >> 1, key.level + 1, key.normal, key.layer);
+    return CellKey((key.cell + (is_odd(key.level) ? 0 : 1)) >> 1, key.level + 1, key.normal, key.layer);
 }
 
 /// One of the eight cells of the next finer level.
 CellKey child_of(CellKey key, uint i) {
-    return CellKey(key.cell * 2 + ivec3(i & 1u, (i >> 1) & 1u, i >> 2), key.level - 1, key.normal, key.layer);
+    ivec3 first = key.cell * 2 - (is_odd(key.level) ? 1 : 0);
+    return CellKey(first + ivec3(i & 1u, (i >> 1) & 1u, i >> 2), key.level - 1, key.normal, key.layer);
 }
 
 /// Where to look for the key: nested PCG, as Meijer's algorithm 2.

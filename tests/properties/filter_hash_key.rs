@@ -24,13 +24,15 @@ struct Place {
     level: i32,
 }
 
-/// floor((local + steps 2^log2_step) / 2^level) modulo 2^32, exactly: everything is a whole number of 2^-40 metres.
+/// floor((local + steps 2^log2_step) / 2^level + 1/3) modulo 2^32, 2/3 at odd levels, exactly: everything is a whole number of thirds of 2^-40
+/// metres.
 fn oracle(place: &Place) -> [i32; 3] {
     let unit = 40;
     std::array::from_fn(|axis| {
         let local = (f64::from(place.local[axis]) * 2f64.powi(unit)) as i128;
         let world = local + (i128::from(place.steps[axis]) << (unit + place.log2_step));
-        (world >> (unit + place.level)) as i32
+        let cell = 1 << (unit + place.level);
+        (3 * world + cell * (1 + i128::from(place.level & 1))).div_euclid(3 * cell) as i32
     })
 }
 
@@ -47,12 +49,59 @@ fn places(seed: u64) -> Vec<Place> {
 }
 
 #[test]
-fn cells_are_floors_of_world_positions_on_both_sides_of_zero_and_a_million_metres_away() {
+fn cells_are_shifted_floors_of_world_positions_on_both_sides_of_zero_and_a_million_metres_away() {
     let mut places = places(1);
     places.extend([-1.0f32, -0.25, 0.0, 0.25].map(|x| Place { local: [x, -x, 2.0 * x], steps: [0; 3], log2_step: 0, level: -1 }));
     let cells: Vec<[i32; 3]> = common::run_kernel(&common::gpu(), CELL, &places);
     for (place, cell) in places.iter().zip(cells) {
         assert_eq!(cell, oracle(place), "{place:?}");
+    }
+}
+
+const FAMILY: &str = r#"
+#include "lib/hash_key.glsl"
+struct In { vec3 local; ivec3 steps; int log2_step; int level; };
+struct Out { ivec3 parent; ivec3 coarser; uint among_children; };
+void kernel(uint i) {
+    In v = inputs[i];
+    CellKey key = CellKey(cell_of(v.local, v.steps, v.log2_step, v.level), v.level, 0u, 0u);
+    ivec3 coarser = cell_of(v.local, v.steps, v.log2_step, v.level + 1);
+    uint found = 0u;
+    for (uint child = 0u; child < 8u; child++) {
+        found += child_of(CellKey(coarser, v.level + 1, 0u, 0u), child) == key ? 1u : 0u;
+    }
+    outputs[i] = Out(parent_of(key).cell, coarser, found);
+}
+"#;
+
+#[repr(C)]
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+struct Family {
+    parent: [i32; 3],
+    coarser: [i32; 3],
+    among_children: u32,
+}
+
+#[test]
+fn a_cell_is_one_of_eight_of_the_next_level() {
+    // Coordinates below 2^31, of which none loses the bit that its parent needs.
+    let places: Vec<Place> = places(5).into_iter().map(|place| Place { level: place.level.max(-8), ..place }).collect();
+    let families: Vec<Family> = common::run_kernel(&common::gpu(), FAMILY, &places);
+    for (place, family) in places.iter().zip(families) {
+        assert!(family.parent == family.coarser && family.among_children == 1, "{place:?}: {family:?}");
+    }
+}
+
+/// Walls and floors are where somebody has measured them off: at zero, and at eighths and tenths.
+#[test]
+fn round_measures_are_in_no_border_of_cells() {
+    let gpu = common::gpu();
+    let at = |i: i32, level| Place { local: [0.125 * i as f32, 0.0, 0.1 * i as f32], steps: [0; 3], log2_step: 3, level };
+    let exact: Vec<Place> = (-12..=5).flat_map(|level| (-8..8).map(move |i| at(i, level))).collect();
+    for off in [-1e-6, 1e-6] {
+        let moved: Vec<Place> = exact.iter().map(|place| Place { local: place.local.map(|x| x + off), ..*place }).collect();
+        let cells = [&exact, &moved].map(|places| common::run_kernel::<_, [i32; 3]>(&gpu, CELL, places));
+        assert_eq!(cells[0], cells[1], "{off} m");
     }
 }
 

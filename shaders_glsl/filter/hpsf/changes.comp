@@ -74,7 +74,9 @@ void main() {
     uint layer = layer_of_part(path.layer);
     FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), arrives, path.now.distance, arrives * view_cosine, layer);
     if (abs(path.now.distance - before.distance) > cell) {
-        add_uncovered(uncovered_key(point, numbers));
+        for (uint level = 0u; level < UNCOVERED_LEVELS; level++) {
+            add_uncovered(uncovered_key(point, numbers, level));
+        }
         return;
     }
     float dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);

@@ -27,9 +27,11 @@ CellKey change_key(FilterPoint point, vec4 numbers, uint level) {
     return key_of(point, numbers, int(level) + finer_levels(point.layer));
 }
 
-/// Of the cell around a vertex in which paths are counted that have come to another surface.
-CellKey uncovered_key(FilterPoint point, vec4 numbers) {
-    return change_key(point, numbers, parameters.hpsf_levels + FURTHER_LEVELS);
+/// Of the cells around a vertex in which paths are counted that have come to another surface: two, as one may find its slot taken.
+const uint UNCOVERED_LEVELS = 2u;
+
+CellKey uncovered_key(FilterPoint point, vec4 numbers, uint level) {
+    return change_key(point, numbers, parameters.hpsf_levels + FURTHER_LEVELS + level);
 }
 
 uint change_slot(CellKey key) {

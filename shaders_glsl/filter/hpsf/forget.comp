@@ -55,9 +55,13 @@ Change change_of_key(CellKey key) {
 
 /// Something has come into view around a vertex.
 bool is_uncovered(FilterPoint point, vec4 numbers) {
-    CellKey key = uncovered_key(point, numbers);
-    uint slot = change_slot(key);
-    return changes.at[slot] == hash_fingerprint(key) && changes.at[slot + UNCOVERED] > 0u;
+    bool uncovered = false;
+    for (uint level = 0u; level < UNCOVERED_LEVELS; level++) {
+        CellKey key = uncovered_key(point, numbers, level);
+        uint slot = change_slot(key);
+        uncovered = uncovered || changes.at[slot] == hash_fingerprint(key) && changes.at[slot + UNCOVERED] > 0u;
+    }
+    return uncovered;
 }
 
 /// At a level, or at the next coarser one where enough paths tell of it.

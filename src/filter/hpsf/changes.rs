@@ -16,8 +16,8 @@ use crate::paths::terms::Terms;
 /// Specialization constant.
 const CHANGE_CAPACITY: u32 = 225;
 
-/// Levels that the shader adds to the filter's, that of what comes into view among them.
-const FURTHER_LEVELS: u32 = 3;
+/// Levels that the shader adds to the filter's, those of what comes into view among them.
+const FURTHER_LEVELS: u32 = 4;
 
 /// Bytes per slot.
 const CHANGE: u64 = 60;
