@@ -85,6 +85,12 @@ float least_alpha(Surface s) {
     return s.clearcoat > 0.0 ? min(s.alpha, s.clearcoat_alpha) : s.alpha;
 }
 
+/// Of the lobes other than the diffuse one together, seen head on; 0..2.
+vec3 specular_colour(Surface s) {
+    vec3 opaque = s.metallic * s.base_color + opaque_part(s) * s.dielectric_f0;
+    return opaque + glass_part(s) * s.base_color + s.clearcoat;
+}
+
 /// It has lobes other than the diffuse one, none of them of a single direction.
 bool is_glossy(Surface s) {
     bool delta = reflection_is_delta(s) || glass_part(s) > 0.0 && glass_is_delta(s) || s.clearcoat > 0.0 && clearcoat_is_delta(s);

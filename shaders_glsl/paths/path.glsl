@@ -259,9 +259,12 @@ bool scatter(inout Path path, Terms terms, HitPoint point, vec3 wo, vec4 u) {
 
 /// The layer of the specular terms, where these may be filtered (filter/hpsf/part.glsl says why not everywhere); else 0.
 uint layer_to_filter(Path path, HitPoint point) {
-    bool sees_it = path.filter_vertex == NO_VERTEX && all(equal(path.throughput, vec3(1.0)));
-    bool filters = HPSF_GLOSSY == 1u && sees_it && is_glossy(point.surface) && !is_painted(point);
-    return filters ? glossy_layer(point.material, sqrt(least_alpha(point.surface)), is_diffuse(point)) : 0u;
+    bool is_first = HPSF_VERTEX == 0u && path.filter_vertex == NO_VERTEX;
+    if (HPSF_GLOSSY != 1u || !is_first || !is_glossy(point.surface)) {
+        return 0u;
+    }
+    vec3 colour = path.throughput * (is_painted(point) ? specular_colour(point.surface) : vec3(1.0));
+    return glossy_layer(coloured(point.material, colour), sqrt(least_alpha(point.surface)), is_diffuse(point));
 }
 
 /// The path arrives at a surface with a lobe to be filtered, and finds it to be a filter vertex or not. False where the path ends there.

@@ -105,7 +105,7 @@ layout(constant_id = 153) const uint NHPSF_UNKNOWN = 0;
 /// Direct and indirect light share a table, or have one each, and are smoothed apart. On keeps shadows sharp where indirect light is smooth and noisy; costs the table's passes and bytes once more.
 layout(constant_id = 160) const uint HPSF_SPLIT = 0;
 //@ hpsf.glossy off off|on
-/// What glossy lobes reflect where the camera sees them is averaged in cells, too, a table of their own, told apart by where the path comes from; rough metals are filter vertices then. Not mirrors, what is seen in them, or lobes whose colour is a texture. Less noise over frames, blurrier reflections; costs the table's passes and bytes once more. Their keys are fingerprints, whatever hpsf.keys says.
+/// What glossy lobes reflect at the first filter vertex is averaged in cells, too, a table of their own, told apart by where the path comes from; rough metals are filter vertices then, in mirrors, too. Where a texture gives the colour, cells are of like colours. Not lobes of a single direction, as mirrors and smooth coats have. Less noise over frames, blurrier reflections; costs the table's passes and bytes once more. Their keys are fingerprints, whatever hpsf.keys says.
 layout(constant_id = 161) const uint HPSF_GLOSSY = 0;
 
 //@ anhpsf.transport last last|all

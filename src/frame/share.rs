@@ -40,7 +40,8 @@ mod tests {
 
     #[test]
     fn shares_follow_each_other_to_the_end_of_the_frame() {
-        for (samples, most, count) in [(1.0, 1, 1), (1.5, 1, 1), (2.5, 1, 2), (40.0, 7, 6), (42.0, 7, 6), (42.25, 7, 6), (4e9, u32::MAX, 1)] {
+        for (samples, most, count) in [(1.0, 1, 1), (1.5, 1, 1), (2.5, 1, 2), (40.0, 7, 6), (42.0, 7, 6), (42.25, 7, 6), (4e9, u32::MAX, 1)]
+        {
             let all: Vec<Share> = shares(samples, most).collect();
             assert_eq!((all.len(), all[0].begin, all[count - 1].end), (count, 0, samples.ceil() as u32));
             assert!(all.iter().enumerate().all(|(i, share)| share.begins() == (i == 0) && share.ends == (i + 1 == count)));
