@@ -31,7 +31,7 @@ Techniques sampling_techniques(Surface s, vec3 wo) {
     }
     p.reflection = EFFECT_REFLECTION ? max_component(reflected) : 0.0;
     p.glass = glass_part(s) * mix(max_component(s.base_color), 1.0, 0.1);
-    if (COMPENSATE_ENERGY && EFFECT_REFLECTION) {
+    if (COMPENSATE_ENERGY && reflects(s)) {
         float lost = 1.0 - reflected_energy(cos_o, s.alpha).x;
         p.diffuse += lost * (p.reflection + p.glass);
         p.far_diffuse = lost * p.glass;
@@ -71,7 +71,7 @@ float diffuse_model(Surface s, float cos_o, float cos_i, float oh) {
 /// Diffuse base and what multiple scattering reflects: the lobes that are wide whatever the roughness.
 void add_wide_reflection(Surface s, float cos_o, float cos_i, float oh, inout BsdfValue value) {
     float diffuse = opaque_part(s) > 0.0 ? diffuse_model(s, cos_o, cos_i, oh) * cos_i : 0.0;
-    if (!EFFECT_REFLECTION) {
+    if (!reflects(s)) {
         value.diffuse = diffuse;
         return;
     }
@@ -96,7 +96,7 @@ void add_reflection(Surface s, vec3 wo, vec3 wi, float cos_o, float cos_i, Techn
     float oh = clamp(dot(wo, h), 0.0, 1.0);
     add_wide_reflection(s, cos_o, cos_i, oh, value);
     value.pdf += p.diffuse * cosine_hemisphere_pdf(cos_i);
-    bool opaque = EFFECT_REFLECTION && !reflection_is_delta(s);
+    bool opaque = reflects(s) && !reflection_is_delta(s);
     bool glass = EFFECT_TRANSMISSION && !glass_is_delta(s);
     if (!opaque && !glass) {
         return;

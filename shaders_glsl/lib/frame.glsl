@@ -28,8 +28,8 @@ vec3 to_world(Basis basis, vec3 v) {
 
 /// A shading normal that `wo` can see. Interpolated and mapped normals may turn away from a viewer whom the surface faces, where a
 /// BSDF is undefined and would be black: such a normal is bent just far enough that its cosine with `wo` is `least`. Without it paths at
-/// grazing angles lose light: 2.6 % in the vault of the hall, and
-/// none with it (+- 0.2 %), against the triangles' own normals (ci/references/README.md).
+/// grazing angles lose light: 2.6 % in the vault of the hall against the triangles' own normals, and none with it (+- 0.2 %;
+/// ci/references/README.md).
 vec3 visible_normal(vec3 normal, vec3 wo) {
     const float least = 0.01;
     float cosine = dot(normal, wo);

@@ -65,6 +65,12 @@ vec3 diffuse_albedo(Surface s) {
     return s.base_color * opaque_part(s);
 }
 
+/// Below its clearcoat it has another lobe than the diffuse one. Where it has none, microfacets and their tables are left alone: a tenth of a
+/// frame of the hall, which evaluates every candidate light.
+bool reflects(Surface s) {
+    return EFFECT_REFLECTION && (s.metallic > 0.0 || s.transmission > 0.0 || s.dielectric_f90 > 0.0);
+}
+
 /// Metal and opaque dielectric reflect as mirrors.
 bool reflection_is_delta(Surface s) {
     return EFFECT_MIRROR && (!EFFECT_GLOSSY || s.alpha < MIRROR_ALPHA);
@@ -94,8 +100,7 @@ vec3 specular_colour(Surface s) {
 /// It has lobes other than the diffuse one, none of them of a single direction.
 bool is_glossy(Surface s) {
     bool delta = reflection_is_delta(s) || glass_part(s) > 0.0 && glass_is_delta(s) || s.clearcoat > 0.0 && clearcoat_is_delta(s);
-    bool reflects = s.metallic > 0.0 || s.transmission > 0.0 || s.clearcoat > 0.0 || s.dielectric_f90 > 0.0;
-    return EFFECT_REFLECTION && reflects && !delta;
+    return (reflects(s) || EFFECT_REFLECTION && s.clearcoat > 0.0) && !delta;
 }
 
 /// Reflectance of the opaque dielectric at a microfacet.

@@ -47,12 +47,12 @@ float competing_pdf(float light_pdf) {
 }
 
 /// By u: light (2), point on it (2). False where it brings nothing.
-bool light_candidate(vec3 position, Surface surface, vec3 wo, vec4 u, out ChosenLight light) {
+bool light_candidate(vec3 position, Surface surface, vec3 wo, Techniques techniques, vec4 u, out ChosenLight light) {
     LightSample found;
     if (!sample_light(position, u, found) || (DIRECT == DIRECT_BSDF && !found.delta)) {
         return false;
     }
-    BsdfValue value = bsdf_evaluate(surface, wo, found.direction);
+    BsdfValue value = evaluate_with(surface, wo, found.direction, techniques);
     float weight = found.delta || DIRECT == DIRECT_NEE ? 1.0 : power_heuristic(competing_pdf(found.pdf), value.pdf);
     light = ChosenLight(found.direction, found.distance, found.radiance * (weight / found.pdf), value);
     return true;
@@ -62,12 +62,13 @@ bool light_candidate(vec3 position, Surface surface, vec3 wo, vec4 u, out Chosen
 bool choose_light(vec3 position, Surface surface, vec3 wo, vec4 u, float selection, out ChosenLight chosen) {
     uint count = light_candidates();
     vec3 albedo = diffuse_albedo(surface);
+    Techniques techniques = sampling_techniques(surface, wo);
     float sum = 0.0;
     float kept = 0.0;
     for (uint i = 0u; i < count; i++) {
         vec4 numbers = vec4((float(i) + u.x) / float(count), fract(u.yzw + float(i) * CANDIDATE_ROTATION));
         ChosenLight light;
-        if (!light_candidate(position, surface, wo, numbers, light)) {
+        if (!light_candidate(position, surface, wo, techniques, numbers, light)) {
             continue;
         }
         float contribution = max_component((albedo * light.value.diffuse + light.value.specular) * light.radiance);
