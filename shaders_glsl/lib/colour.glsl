@@ -7,6 +7,11 @@ float luminance(vec3 colour) {
     return dot(colour, vec3(0.2126, 0.7152, 0.0722));
 }
 
+/// Mean of the channels' squares.
+float mean_square(vec3 v) {
+    return dot(v, v) / 3.0;
+}
+
 float max_component(vec3 v) {
     return max(v.x, max(v.y, v.z));
 }

@@ -235,7 +235,7 @@ struct Parameters {
     /// Largest angle between the normals of vertices that it takes for similar.
     float hpsf_smooth_angle;
     //@ hpsf.smooth_blind 1 1..5 passes
-    /// How many of these passes take little account of luminance while samples are few. More: less noise, and less light lost with bright samples that nothing around resembles; blurrier shadows in the first frames.
+    /// How many of these passes take little account of colour while samples are few. More: less noise, and less light lost with bright samples that nothing around resembles; blurrier shadows in the first frames.
     uint hpsf_smooth_blind;
     //@ hpsf.smooth_indirect_blind 3 1..5 passes
     /// The same for indirect light.
@@ -247,7 +247,7 @@ struct Parameters {
     /// In those passes a mean over n samples counts as so much over n times noisier than it seems, for few samples say little about how noisy they are.
     float hpsf_smooth_few;
     //@ hpsf.smooth_noise 1.6 0.01..1000 standard deviations
-    /// Largest difference in luminance that the later of these passes take for noise. More: less noise, blurrier shadows.
+    /// Largest difference that the later of these passes take for noise. More: less noise, blurrier shadows.
     float hpsf_smooth_noise;
     //@ nhpsf.vertices 2 1..16 vertices
     /// Diffuse vertices of a path whose samples enter cells; one more is only looked up. More fill hidden cells and bring light from farther in a frame, at a shadow ray, a scattered ray and 48 bytes each. 1: cells out of view are unknown. At most paths.max_bounces.

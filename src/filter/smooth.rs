@@ -18,7 +18,7 @@ pub struct Passes {
     pub blind: usize,
 }
 
-/// The mean over samples, w being the variance of its luminance, and how many samples it is over.
+/// The mean over samples, w being its variance, and how many samples it is over.
 #[derive(Debug, Clone, Copy)]
 pub struct Noisy {
     pub mean: ImageHandle,

@@ -19,7 +19,7 @@ layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D filter_incident;
 layout(set = 1, binding = 9, r32ui) readonly uniform uimage2D filter_layer;
 layout(set = 1, binding = 5, scalar) readonly buffer Keys { uint at[]; } keys;
 layout(set = 1, binding = 6, scalar) readonly buffer Cells { uvec4 at[]; } cells;
-/// w: variance of its luminance; below 0 where nothing is known, not even by a sample of the pixel's own.
+/// w: variance, the mean of the channels'; below 0 where nothing is known, not even by a sample of the pixel's own.
 layout(set = 1, binding = 7, COLOR_FORMAT) writeonly uniform image2D mean;
 /// Samples that the pixel's radiance is the mean of; 0 where it is its own alone, or there is no filter vertex.
 layout(set = 1, binding = 8, r32ui) writeonly uniform uimage2D samples;
@@ -117,10 +117,9 @@ Cell look_up(FilterPoint point, vec4 numbers) {
     return best;
 }
 
-/// Of the mean's luminance, as the pixel's own sample has it, one of `count`: noisy, and right in the mean.
+/// Of the mean, as the pixel's own sample has it, one of `count`: noisy, and right in the mean.
 float variance_of_mean(vec3 own, vec3 average, uint count) {
-    float deviation = luminance(count > 1u ? own - average : own);
-    return deviation * deviation / float(max(count, 2u) - 1u);
+    return mean_square(count > 1u ? own - average : own) / float(max(count, 2u) - 1u);
 }
 
 void main() {

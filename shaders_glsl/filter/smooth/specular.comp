@@ -1,4 +1,4 @@
-// What the smoothing of the specular terms begins with: their sum, and for the variance of its luminance its square, which is nearly the
+// What the smoothing of the specular terms begins with: their sum, and for its variance its square, which is nearly the
 // same for a single sample of so wide a distribution.
 #include "lib/colour.glsl"
 #include "lib/storage.glsl"
@@ -17,7 +17,6 @@ void main() {
         return;
     }
     vec3 sum = imageLoad(specular_direct, pixel).rgb + imageLoad(specular_indirect, pixel).rgb;
-    float brightness = luminance(sum);
-    imageStore(specular, pixel, storable(vec4(sum, brightness * brightness)));
+    imageStore(specular, pixel, storable(vec4(sum, mean_square(sum))));
     imageStore(samples, pixel, uvec4(1u));
 }
