@@ -46,6 +46,8 @@ pub enum Part {
     Indirect,
     /// Of the lobes other than the diffuse one.
     Glossy,
+    /// All light, at the vertices behind the first one.
+    Behind,
 }
 
 /// Names of a table's passes and outputs.
@@ -106,6 +108,7 @@ impl Part {
                 mean: "specular",
                 samples: "specular_samples",
             },
+            Self::Behind => Names { clear: "nhpsf clear", merge: "nhpsf merge", ..Self::Both.names() },
         }
     }
 }
@@ -191,14 +194,32 @@ impl Table {
         })
     }
 
+    /// Sends what cells know to the vertices before, and collects vertices behind the first one alone: of a table that is about these.
+    pub fn learn(&self, frame: &mut FrameBuilder, terms: &Terms, vertices: &PathVertices) -> Result<(), GpuError> {
+        nhpsf::transport(frame, self, terms, vertices)?;
+        self.clear(frame);
+        if self.options.ordered || self.options.evicts {
+            nhpsf::claim(frame, self, vertices)?;
+        }
+        if self.options.evicts {
+            nhpsf::evict(frame, self, vertices)?;
+        }
+        nhpsf::collect(frame, self, vertices)?;
+        self.merge(frame)
+    }
+
+    fn clear(&self, frame: &mut FrameBuilder) {
+        if self.options.swapped {
+            frame.fill(self.options.part.names().clear, self.keys.current, 0);
+        }
+    }
+
     pub fn filter(&self, frame: &mut FrameBuilder, paths: &Paths) -> Result<Noisy, GpuError> {
         let terms = &paths.terms;
         if let Some(vertices) = &paths.behind {
             nhpsf::transport(frame, self, terms, vertices)?;
         }
-        if self.options.swapped {
-            frame.fill(self.options.part.names().clear, self.keys.current, 0);
-        }
+        self.clear(frame);
         let behind = || [&paths.behind, &paths.chains].into_iter().flatten().filter(|vertices| vertices.options.sampled() > 0);
         if self.options.ordered || self.options.evicts {
             self.give_slots(frame, terms, behind)?;

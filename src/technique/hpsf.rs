@@ -1,12 +1,12 @@
 //! `hpsf`: the radiance behind the filter vertex, averaged over cells of the world that a hash table keeps.
 
-use super::{PassOptions, Technique};
+use super::{PassOptions, Technique, nhpsf};
 use crate::display::{composite, temporal};
 use crate::filter::hpsf::{self, Options, Part, Paths, Table};
 use crate::filter::smooth::{self, Layer, Passes};
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
-use crate::paths::gbuffer;
+use crate::paths::{self, Kernel, gbuffer};
 use crate::scene::effects::Effect;
 
 /// The value of hpsf.time.
@@ -56,8 +56,19 @@ pub(super) fn passes_of(
 
 /// Paths; some of the last frame's, too, where cells want to know of changes and something moves that could make one. Where nothing does,
 /// they would find exactly none.
+///
+/// Where nothing moves, what arrives at a second vertex may be what cells know of it.
 fn add_paths(frame: &mut FrameBuilder, options: PassOptions) -> Result<Paths, GpuError> {
-    let retraces = options.parameters.number("hpsf.time") == HYBRID && options.effects.contains(Effect::ObjectAnimation);
+    let moves = options.effects.contains(Effect::ObjectAnimation);
+    if !moves && options.parameters.number("hpsf.second") == 1.0 && matches!(options.kernel(), Kernel::Megakernel) {
+        let list = nhpsf::list_of(options);
+        let keys = u64::from(frame.pixels());
+        let cells = Table::new(frame, Options { vertices: list.sampled(), ..table_options(options, Part::Behind) })?;
+        let (terms, vertices) = paths::add_with_vertices(frame, list, |pass| cells.looks_up(pass, keys))?;
+        cells.learn(frame, &terms, &vertices)?;
+        return Ok(Paths { terms, behind: None, chains: None, retraced: None });
+    }
+    let retraces = options.parameters.number("hpsf.time") == HYBRID && moves;
     if !retraces {
         return Ok(Paths { terms: options.kernel().add_with_terms(frame)?, behind: None, chains: None, retraced: None });
     }
@@ -119,6 +130,6 @@ fn table_options(options: PassOptions, part: Part) -> Options {
         evicts: number("hpsf.eviction") == 1.0,
         exact_keys: number("hpsf.keys") == 1.0 && part != Part::Glossy,
         float_sums: number("hpsf.sums") == 1.0,
-        statistics: !matches!(part, Part::Indirect | Part::Glossy) && options.wants(&hpsf::STATISTICS),
+        statistics: !matches!(part, Part::Indirect | Part::Glossy | Part::Behind) && options.wants(&hpsf::STATISTICS),
     }
 }

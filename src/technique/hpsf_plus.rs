@@ -21,7 +21,12 @@ pub(super) const TECHNIQUE: Technique = Technique {
         // Fine cells are many: with room for them all, which pixel fails to get one is left to chance no more.
         ("hpsf.cells", "2"),
         ("hpsf.jitter", "0.4"),
+        ("hpsf.normal_bits", "6"),
+        ("hpsf.second", "cells"),
+        ("nhpsf.wider", "1"),
         ("hpsf.time", "hybrid"),
+        // Cells of second vertices, and the light that comes from them, get better with every frame.
+        ("hpsf.recency", "1"),
         ("hpsf.adapt", "2"),
         ("temporal.clamp", "1"),
     ],

@@ -26,7 +26,7 @@ fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle,
 
 /// A list has the vertices behind the first one. The thesis ends paths with one that enters its cell, the balanced form with one that is read,
 /// which has to come within the bounces of a path.
-fn list_of(options: PassOptions) -> ListOptions {
+pub(super) fn list_of(options: PassOptions) -> ListOptions {
     let number = |key| options.parameters.number(key) as u32;
     let last_is_read = options.parameters.number("nhpsf.form") == 0.0;
     let most = if last_is_read { number("nhpsf.vertices").min(number("paths.max_bounces")) } else { number("nhpsf.vertices") - 1 };

@@ -98,9 +98,9 @@ vec4 fitted(Taps taps, out float left) {
     return vec4(max(mean.rgb - share * trend, vec3(0.0)), mean.w);
 }
 
-/// In standard deviations, squared.
+/// In standard deviations, squared. Later steps have their variance from the more neighbours, and are the less blind.
 float noise_at(ivec2 pixel) {
-    float few = BLIND ? parameters.hpsf_smooth_few / float(max(imageLoad(samples, pixel).x, 1u)) : 0.0;
+    float few = BLIND ? parameters.hpsf_smooth_few * 4.0 / (float(STEP * STEP) * float(max(imageLoad(samples, pixel).x, 1u))) : 0.0;
     return parameters.hpsf_smooth_noise * parameters.hpsf_smooth_noise * (1.0 + few * few);
 }
 
