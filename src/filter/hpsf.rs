@@ -15,7 +15,7 @@ mod changes;
 
 use super::nhpsf;
 use super::smooth::Noisy;
-use crate::frame::{BufferHandle, FrameBuilder, History, PassBuilder};
+use crate::frame::{BufferHandle, FrameBuilder, History, ImageHandle, PassBuilder};
 use crate::gpu::{GpuError, vk};
 use crate::paths::Retraced;
 use crate::paths::terms::Terms;
@@ -148,6 +148,14 @@ pub struct Paths {
     pub retraced: Option<Retraced>,
 }
 
+/// What a table says of each pixel.
+#[derive(Debug, Clone, Copy)]
+pub struct Filtered {
+    pub noisy: Noisy,
+    /// Relative change of the light since the last frame, 0..1, where paths were traced again.
+    pub change: Option<ImageHandle>,
+}
+
 /// Cells of the world, and what is known of them.
 pub struct Table {
     capacity: u32,
@@ -214,7 +222,7 @@ impl Table {
         }
     }
 
-    pub fn filter(&self, frame: &mut FrameBuilder, paths: &Paths) -> Result<Noisy, GpuError> {
+    pub fn filter(&self, frame: &mut FrameBuilder, paths: &Paths) -> Result<Filtered, GpuError> {
         let terms = &paths.terms;
         if let Some(vertices) = &paths.behind {
             nhpsf::transport(frame, self, terms, vertices)?;
@@ -228,14 +236,13 @@ impl Table {
         for vertices in behind() {
             nhpsf::collect(frame, self, vertices)?;
         }
-        if let Some(retraced) = paths.retraced {
-            changes::add(frame, self, terms, retraced, self.options.levels)?;
-        }
+        let add_changes = |retraced| changes::add(frame, self, terms, retraced, self.options.levels);
+        let change = paths.retraced.map(add_changes).transpose()?;
         self.merge(frame)?;
         if self.options.statistics {
             self.statistics(frame, terms)?;
         }
-        self.resolve(frame, terms)
+        Ok(Filtered { noisy: self.resolve(frame, terms)?, change })
     }
 
     fn give_slots<'v, V>(&self, frame: &mut FrameBuilder, terms: &Terms, behind: impl Fn() -> V) -> Result<(), GpuError>

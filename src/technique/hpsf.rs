@@ -1,6 +1,7 @@
 //! `hpsf`: the radiance behind the filter vertex, averaged over cells of the world that a hash table keeps.
 
 use super::{PassOptions, Technique, nhpsf};
+use crate::display::temporal::Changes;
 use crate::display::{composite, temporal};
 use crate::filter::hpsf::{self, Options, Part, Paths, Table};
 use crate::filter::smooth::{self, Layer, Passes};
@@ -45,11 +46,14 @@ pub(super) fn passes_of(
     let indirect = further_table(splits, Part::Indirect)?;
     let glossy = further_table(options.parameters.number("hpsf.glossy") == 1.0, Part::Glossy)?;
     let paths = add_paths(frame, &table)?;
-    let diffuse = filter_diffuse(frame, &table, indirect.as_ref(), &paths, options)?;
+    let (diffuse, change) = filter_diffuse(frame, &table, indirect.as_ref(), &paths, options)?;
     let specular = filter_specular(frame, glossy.as_ref(), &paths, options)?;
     let radiance = composite::add_parts(frame, &paths.terms, diffuse, specular)?;
     match gbuffer {
-        Some(gbuffer) if over_frames => temporal::add(frame, &gbuffer, radiance),
+        Some(gbuffer) if over_frames => {
+            let changes = change.map(|change| Changes { change, vertices: paths.terms.vertex.position });
+            temporal::add(frame, &gbuffer, radiance, changes)
+        }
         _ => Ok(radiance),
     }
 }
@@ -76,23 +80,25 @@ fn add_paths(frame: &mut FrameBuilder, options: PassOptions) -> Result<Paths, Gp
     Ok(Paths { terms, behind: None, chains: None, retraced: Some(retraced) })
 }
 
-/// Direct and indirect light, or twice their sum.
+/// Direct and indirect light, or twice their sum; and where it changes.
 fn filter_diffuse(
     frame: &mut FrameBuilder,
     table: &Table,
     indirect: Option<&Table>,
     paths: &Paths,
     options: PassOptions,
-) -> Result<[ImageHandle; 2], GpuError> {
+) -> Result<([ImageHandle; 2], Option<ImageHandle>), GpuError> {
     let mut smoothed = |table: &Table, layer: &Layer, key| {
-        let noisy = table.filter(frame, paths)?;
-        smooth::add(frame, &paths.terms.vertex, noisy, layer, smoothing(options, key))
+        let filtered = table.filter(frame, paths)?;
+        let smoothed = smooth::add(frame, &paths.terms.vertex, filtered.noisy, layer, smoothing(options, key))?;
+        Ok((smoothed, filtered.change))
     };
     match indirect {
-        None => Ok([smoothed(table, &smooth::DIFFUSE, "hpsf.smooth")?; 2]),
+        None => smoothed(table, &smooth::DIFFUSE, "hpsf.smooth").map(|(both, change)| ([both; 2], change)),
         Some(indirect) => {
-            let direct = smoothed(table, &smooth::DIRECT, "hpsf.smooth")?;
-            Ok([direct, smoothed(indirect, &smooth::INDIRECT, "hpsf.smooth_indirect")?])
+            let (direct, change) = smoothed(table, &smooth::DIRECT, "hpsf.smooth")?;
+            let (indirect, _) = smoothed(indirect, &smooth::INDIRECT, "hpsf.smooth_indirect")?;
+            Ok(([direct, indirect], change))
         }
     }
 }
@@ -106,7 +112,7 @@ fn filter_specular(
 ) -> Result<[ImageHandle; 2], GpuError> {
     let (terms, passes) = (&paths.terms, smoothing(options, "hpsf.smooth_specular"));
     let noisy = match glossy {
-        Some(table) => table.filter(frame, &Paths { behind: None, chains: None, ..*paths })?,
+        Some(table) => table.filter(frame, &Paths { behind: None, chains: None, ..*paths })?.noisy,
         None if passes.count == 0 => return Ok([terms.specular_direct, terms.specular_indirect]),
         None => smooth::add_specular(frame, terms)?,
     };

@@ -25,6 +25,10 @@ vec3 radiance_of(Kept path) {
     return PART == PART_GLOSSY ? path.specular : path.diffuse;
 }
 
+bool others_changed(Kept now, Kept before) {
+    return any(PART == PART_GLOSSY ? notEqual(now.diffuse, before.diffuse) : notEqual(now.specular, before.specular));
+}
+
 bool has_lobes(uint layer) {
     return PART == PART_GLOSSY ? layer != 0u : has_diffuse_lobe(layer);
 }
@@ -36,10 +40,11 @@ bool claim_change(CellKey key, uint slot) {
     return found == NO_FINGERPRINT || found == fingerprint;
 }
 
-void add_uncovered(CellKey key) {
+/// `word` of its slot.
+void count(CellKey key, uint word) {
     uint slot = change_slot(key);
     if (claim_change(key, slot)) {
-        atomicAdd(changes.at[slot + UNCOVERED], 1u);
+        atomicAdd(changes.at[slot + word], 1u);
     }
 }
 
@@ -75,12 +80,15 @@ void main() {
     FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), arrives, path.now.distance, arrives * view_cosine, layer);
     if (abs(path.now.distance - before.distance) > cell) {
         for (uint level = 0u; level < UNCOVERED_LEVELS; level++) {
-            add_uncovered(uncovered_key(point, numbers, level));
+            count(uncovered_key(point, numbers, level), UNCOVERED);
         }
         return;
     }
     float dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
     for (uint level = 0u; level < parameters.hpsf_levels + FURTHER_LEVELS; level++) {
         add_path(change_key(point, numbers, level), radiance_of(path.now), radiance_of(before), dither);
+    }
+    for (uint level = 0u; level < UNCOVERED_LEVELS && others_changed(path.now, before); level++) {
+        count(uncovered_key(point, numbers, level), OTHER_LOBES);
     }
 }

@@ -17,10 +17,11 @@ layout(constant_id = 225) const uint CHANGE_CAPACITY = 1;
 /// Levels coarser than the filter's: retraced paths are few, and a change that is found in a large cell is still one.
 const uint FURTHER_LEVELS = 2u;
 
-/// Words of a slot: fingerprint, number of paths, low and high word of each channel, now and before, and number of paths that have come to another
-/// surface.
-const uint CHANGE_WORDS = 15u;
+/// Words of a slot: fingerprint, number of paths, low and high word of each channel, now and before, number of paths that have come to another
+/// surface, and of those on which the lobes have changed that the table is not about.
+const uint CHANGE_WORDS = 16u;
 const uint UNCOVERED = 14u;
+const uint OTHER_LOBES = 15u;
 
 /// Of a vertex, `level` levels above that of its distance.
 CellKey change_key(FilterPoint point, vec4 numbers, uint level) {

@@ -23,7 +23,7 @@ layout(set = 1, binding = 4, scalar) readonly buffer Keys { uint at[]; } keys;
 layout(set = 1, binding = 5, scalar) readonly buffer Sums { uint at[]; } sums;
 layout(set = 1, binding = 6, scalar) buffer Cells { uint at[]; } cells;
 layout(set = 1, binding = 7, scalar) buffer Seeds { uint at[]; } seeds;
-/// Relative change of the light in the pixel's cells, 0..1.
+/// Relative change of the light in the pixel's cells, 0..1; 1 where something has come into view, or other lobes have changed.
 layout(set = 1, binding = 8, r32f) writeonly uniform image2D change;
 layout(set = 1, binding = 9, r32ui) readonly uniform uimage2D filter_layer;
 
@@ -53,15 +53,15 @@ Change change_of_key(CellKey key) {
     return Change(changes.at[slot + 1u], sums_at(slot + 2u), sums_at(slot + 8u));
 }
 
-/// Something has come into view around a vertex.
-bool is_uncovered(FilterPoint point, vec4 numbers) {
-    bool uncovered = false;
+/// Whether there are retraced paths around a vertex that count in this word.
+bool is_told(FilterPoint point, vec4 numbers, uint word) {
+    bool told = false;
     for (uint level = 0u; level < UNCOVERED_LEVELS; level++) {
         CellKey key = uncovered_key(point, numbers, level);
         uint slot = change_slot(key);
-        uncovered = uncovered || changes.at[slot] == hash_fingerprint(key) && changes.at[slot + UNCOVERED] > 0u;
+        told = told || changes.at[slot] == hash_fingerprint(key) && changes.at[slot + word] > 0u;
     }
-    return uncovered;
+    return told;
 }
 
 /// At a level, or at the next coarser one where enough paths tell of it.
@@ -121,9 +121,10 @@ void main() {
         bool uncovered = false;
         for (uint i = 0u; i <= parameters.hpsf_lookups && (i == 0u || uncovered || shown > 0.0); i++) {
             vec4 numbers = jitter_numbers(uvec2(pixel), i);
-            uncovered = uncovered || is_uncovered(point, numbers);
+            uncovered = uncovered || is_told(point, numbers, UNCOVERED);
             shown = max(shown, forget_cells(point, numbers, uncovered));
         }
+        shown = uncovered || is_told(point, jitter_numbers(uvec2(pixel), 0u), OTHER_LOBES) ? 1.0 : shown;
     }
     imageStore(change, pixel, vec4(shown));
 }

@@ -4,11 +4,11 @@
 //! claim to know. Puts out `hpsf_change` (`hpsf_change_indirect`, `specular_change`), the relative change in each pixel's cells. No history
 //! of its own.
 //!
-//! changes: 80 bytes read per retraced path, and per level 60 updated of a table of as many slots, which is cleared before. forget: 24 bytes
-//! read (of glossy lobes 28) and 4 written per pixel, and per level 60 read and, where there is change, 20 updated for each lookup.
+//! changes: 80 bytes read per retraced path, and per level 64 updated of a table of as many slots, which is cleared before. forget: 24 bytes
+//! read (of glossy lobes 28) and 4 written per pixel, and per level 64 read and, where there is change, 20 updated for each lookup.
 
 use super::{CAPACITY, FLOAT_SUMS, PART, SAMPLE_BITS, Table, sample_bits};
-use crate::frame::FrameBuilder;
+use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::{GpuError, vk};
 use crate::paths::Retraced;
 use crate::paths::terms::Terms;
@@ -20,9 +20,15 @@ const CHANGE_CAPACITY: u32 = 225;
 const FURTHER_LEVELS: u32 = 4;
 
 /// Bytes per slot.
-const CHANGE: u64 = 60;
+const CHANGE: u64 = 64;
 
-pub(super) fn add(frame: &mut FrameBuilder, table: &Table, terms: &Terms, retraced: Retraced, levels: u32) -> Result<(), GpuError> {
+pub(super) fn add(
+    frame: &mut FrameBuilder,
+    table: &Table,
+    terms: &Terms,
+    retraced: Retraced,
+    levels: u32,
+) -> Result<ImageHandle, GpuError> {
     let slots = retraced.paths * (levels + FURTHER_LEVELS);
     let bits = sample_bits(table.insertions);
     let names = table.options.part.names();
@@ -43,5 +49,6 @@ pub(super) fn add(frame: &mut FrameBuilder, table: &Table, terms: &Terms, retrac
     let pass = pass.reads("changes", changes).touching(touched * CHANGE);
     let pass = pass.reads("keys", table.keys.current).touching(touched * table.key_bytes);
     let pass = pass.reads("sums", table.sums).touching(touched * 4).updates("cells", table.cells.current).touching(touched * 4);
-    pass.updates("seeds", table.seeds).touching(touched * 4).writes("change", change).add()
+    pass.updates("seeds", table.seeds).touching(touched * 4).writes("change", change).add()?;
+    Ok(change)
 }
