@@ -208,7 +208,8 @@ struct FrameData {
     /// The frame's origin is at this multiple of 2^log2_origin_step metres from the world's; modulo 2^32.
     int log2_origin_step;
     ivec3 origin_steps;
-    uint padding;
+    /// Of this frame's rounds, the number of this one, from 0.
+    uint round;
 };
 
 #endif

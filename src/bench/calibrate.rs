@@ -57,8 +57,9 @@ impl Calibration<'_> {
             Settings { extent: size, technique: reference(), parameters: self.with_user_values(reference()), ..self.settings.clone() };
         let subject = Subject { gpu: self.gpu, scene: self.scene, settings: &truth, frame: 0 };
         let reference = ReferenceCache::open().reference(&subject, self.reference_samples(&truth)?)?;
-        let samples =
-            |technique: &'static Technique| SAMPLES.into_iter().filter(|&spp| spp <= technique.max_spp).map(move |spp| (technique, spp));
+        let samples = |technique: &'static Technique| {
+            SAMPLES.into_iter().filter(|&spp| spp <= technique.most_governed()).map(move |spp| (technique, spp))
+        };
         let all: Vec<(&Technique, u32)> = REGISTRY.iter().flat_map(samples).collect();
         let mut candidates = Vec::new();
         for (done, &(technique, spp)) in all.iter().enumerate() {
@@ -71,7 +72,7 @@ impl Calibration<'_> {
                 technique: technique.name.to_owned(),
                 settings: Values::new(),
                 spp,
-                most_spp: technique.max_spp,
+                most_spp: technique.most_governed(),
                 ns_per_pixel: shots.timings.frame_ms_median * 1e6 / f64::from(size[0] * size[1]),
                 flip: accuracy::mean_flip(&shots.last, &reference)?,
             });

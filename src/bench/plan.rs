@@ -114,7 +114,7 @@ impl Place<'_> {
         for technique in chosen {
             for settings in combinations(&row.settings, &row.grid) {
                 self.check(technique, &settings)?;
-                for &spp in row.spp.iter().filter(|&&spp| spp <= technique.max_spp) {
+                for &spp in &row.spp {
                     for frames in self.frames(technique, &row.frames) {
                         points.push(self.point(technique, spp, frames, settings.clone()));
                     }

@@ -4,6 +4,7 @@ pub mod accumulate;
 pub mod composite;
 pub mod exr_file;
 pub mod image;
+pub mod rounds;
 pub mod temporal;
 pub mod tonemap;
 

@@ -17,7 +17,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
     name: "hpsf",
     help: "one path per pixel; what arrives at its first diffuse vertex is averaged over hashed cells of the world, and over frames",
     accumulates: false,
-    max_spp: 1,
+    rounds: true,
     extra_outputs: &hpsf::STATISTICS,
     defaults: &[],
     passes,
@@ -54,7 +54,7 @@ pub(super) fn passes_of(
             let changes = change.map(|change| Changes { change, vertices: paths.terms.vertex.position });
             temporal::add(frame, &gbuffer, radiance, changes)
         }
-        _ => Ok(radiance),
+        _ => options.mean_of_rounds(frame, radiance),
     }
 }
 

@@ -21,6 +21,7 @@ pub use renderer::Renderer;
 pub use settings::{RenderError, Settings, ViewChoice};
 pub use timings::{BuildTimes, MemoryUse, PassTime, RayCounts, Timings};
 
+use crate::display::rounds;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
 use crate::paths::{Kernel, WavefrontOptions};
@@ -33,8 +34,9 @@ pub struct Technique {
     pub help: &'static str,
     /// Its picture is the mean of all frames so far; else each frame stands alone.
     pub accumulates: bool,
-    /// Most samples per pixel and frame.
-    pub max_spp: u32,
+    /// A further sample per pixel of a frame is all of its passes once more, at the same time, and their mean is the picture; else path tracing
+    /// takes as many as there are.
+    pub rounds: bool,
     /// Outputs that are made only where asked for, beside the g-buffer's.
     pub(crate) extra_outputs: &'static [&'static str],
     /// Parameters whose default differs here.
@@ -44,6 +46,11 @@ pub struct Technique {
 }
 
 impl Technique {
+    /// Samples per pixel that are chosen for a frame, from many, where only a budget is given. What goes in rounds is best seen with more frames.
+    pub fn most_governed(&self) -> u32 {
+        if self.rounds { 1 } else { u32::MAX }
+    }
+
     /// Every parameter at its default here.
     pub fn parameters(&self) -> Parameters {
         let mut parameters = Parameters::default();
@@ -61,11 +68,18 @@ pub(crate) struct PassOptions<'a> {
     pub outputs: &'a [String],
     /// Those that the host needs itself: sizes, and which passes there are.
     pub parameters: &'a Parameters,
+    /// Samples per pixel of a frame.
+    pub samples: u32,
     /// What the scene calls for.
     pub effects: &'a EffectSet,
 }
 
 impl PassOptions<'_> {
+    /// The mean of a frame's rounds, where there is more than one.
+    fn mean_of_rounds(&self, frame: &mut FrameBuilder, picture: ImageHandle) -> Result<ImageHandle, GpuError> {
+        if self.samples > 1 { rounds::add(frame, picture) } else { Ok(picture) }
+    }
+
     /// Whether one of these outputs was asked for, which the technique itself may not need.
     fn wants(&self, outputs: &[&str]) -> bool {
         self.outputs.iter().any(|name| outputs.contains(&name.as_str()))

@@ -10,7 +10,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
     name: "reference",
     help: "path tracing without a filter, accumulated over all frames",
     accumulates: true,
-    max_spp: u32::MAX,
+    rounds: false,
     extra_outputs: &[],
     // Many samples filter textures themselves, and better.
     defaults: &[("textures.level", "zero")],

@@ -29,6 +29,8 @@ pub struct Renderer {
     recorder: Recorder,
     /// Since the start, or since the last restart.
     frame: u32,
+    /// Rounds likewise: what shaders take for frames.
+    round: u32,
     /// Frame of the animation that frame 0 shows.
     first_frame: u32,
     /// Of the frame to come; at least 1.
@@ -42,12 +44,9 @@ impl Renderer {
     /// Prepares the scene and compiles the technique's passes.
     ///
     /// # Errors
-    /// An unknown camera, structure or output; more samples than the technique takes; what the device refuses.
+    /// An unknown camera, structure or output; what the device refuses.
     pub fn new(gpu: &Gpu, scene: Scene, settings: Settings) -> Result<Self, RenderError> {
         let technique = settings.technique;
-        if settings.spp > technique.max_spp {
-            return Err(RenderError::TooManySamples { technique: technique.name, most: technique.max_spp, asked: settings.spp });
-        }
         let mut prepared = PreparedScene::new(gpu, scene, &settings, FRAMES_IN_FLIGHT)?;
         let (mut clock, before) = (Clock::start(), gpu.allocated_bytes());
         let bind_structure = |slot: usize, set: &DescriptorSet| prepared.structure.bind(slot, set);
@@ -56,7 +55,8 @@ impl Renderer {
         let globals = Globals::new(gpu, &info)?;
         let constants = [prepared.effects.specialization(), settings.parameters.constants(), prepared.structure.constants()].concat();
         let mut frame = FrameBuilder::new(gpu, &globals, prepared.entry.stem, settings.parameters.precision(), constants, settings.extent);
-        let options = PassOptions { outputs: &settings.outputs, parameters: &settings.parameters, effects: &prepared.effects };
+        let options =
+            PassOptions { outputs: &settings.outputs, parameters: &settings.parameters, samples: settings.spp, effects: &prepared.effects };
         let picture = (technique.passes)(&mut frame, options)?;
         let graph = frame.build();
         check_outputs(&settings, &graph)?;
@@ -69,6 +69,7 @@ impl Renderer {
             recorder: Recorder::new(graph.pass_names()),
             parameters: settings.parameters.fields(),
             frame: 0,
+            round: 0,
             first_frame: 0,
             samples: f64::from(settings.spp),
             first_sample: 0,
@@ -95,20 +96,26 @@ impl Renderer {
     /// # Errors
     /// The device is lost.
     pub fn render_frame_telling(&mut self, mut progress: impl FnMut(f64)) -> Result<(), RenderError> {
-        let (samples, mut cpu_ms) = (self.samples.ceil() as u32, 0.0);
-        for share in shares(self.samples, self.most_samples_at_once()) {
-            let slot = self.ring.acquire()?;
-            self.collect(slot);
-            let mut clock = Clock::start();
-            if share.begins() && self.frame > 0 && self.moves() {
-                self.advance_pose()?;
+        let mut cpu_ms = 0.0;
+        let rounds = if self.settings.technique.rounds { self.settings.spp } else { 1 };
+        for round in 0..rounds {
+            let samples = if self.settings.technique.rounds { 1.0 } else { self.samples };
+            for share in shares(samples, self.most_samples_at_once()) {
+                let slot = self.ring.acquire()?;
+                self.collect(slot);
+                let mut clock = Clock::start();
+                if share.begins() && (self.frame > 0 || round > 0) && self.moves() {
+                    self.advance_pose()?;
+                }
+                self.ends[slot] = share.ends && round + 1 == rounds;
+                self.submit(slot, share, round)?;
+                cpu_ms += clock.lap();
+                progress((f64::from(round) + f64::from(share.end) / samples.ceil()) / f64::from(rounds));
             }
-            self.submit(slot, share)?;
-            cpu_ms += clock.lap();
-            progress(f64::from(share.end) / f64::from(samples));
+            self.first_sample = self.first_sample.wrapping_add(samples.ceil() as u32);
+            self.round += 1;
         }
         self.recorder.add_cpu(cpu_ms);
-        self.first_sample = self.first_sample.wrapping_add(samples);
         self.frame += 1;
         Ok(())
     }
@@ -118,13 +125,12 @@ impl Renderer {
         (u64::from(self.parameters.paths_per_submission) / (u64::from(width) * u64::from(height))).max(1) as u32
     }
 
-    fn submit(&mut self, slot: usize, share: Share) -> Result<(), RenderError> {
+    fn submit(&mut self, slot: usize, share: Share, round: u32) -> Result<(), RenderError> {
         let PreparedScene { placed, pose, scene, .. } = &mut self.prepared;
         placed.write(slot, scene, pose);
-        self.globals.write(slot, &self.frame_data(slot, share), &self.parameters);
+        self.globals.write(slot, &self.frame_data(slot, share, round), &self.parameters);
         let PreparedScene { structure, pose, .. } = &mut self.prepared;
         let (instances, graph, set, timer) = (pose.instances(), &mut self.graph, self.globals.set(slot), &mut self.timers[slot]);
-        self.ends[slot] = share.ends;
         Ok(self.ring.submit(slot, |commands| {
             structure.update(commands, slot, instances);
             graph.record(commands, set, timer, share);
@@ -139,7 +145,7 @@ impl Renderer {
     pub fn restart(&mut self, seed: u32, first_frame: u32) -> Result<(), RenderError> {
         self.finish()?;
         self.graph.reset();
-        (self.settings.seed, self.first_frame, self.frame, self.first_sample) = (seed, first_frame, 0, 0);
+        (self.settings.seed, self.first_frame, self.frame, self.round, self.first_sample) = (seed, first_frame, 0, 0, 0);
         if !self.prepared.scene.animation.is_empty() {
             // Twice, so that nothing seems to have moved.
             self.advance_pose()?;
@@ -148,9 +154,9 @@ impl Renderer {
         Ok(())
     }
 
-    /// Samples per pixel of the frames to come, from 1 to what the technique takes; of a fraction, so many pixels take one more.
+    /// Samples per pixel of the frames to come, at least 1; of a fraction, so many pixels take one more. Rounds stay as many as they are.
     pub fn set_samples(&mut self, samples: f64) {
-        self.samples = samples.clamp(1.0, f64::from(self.settings.technique.max_spp));
+        self.samples = samples.clamp(1.0, f64::from(u32::MAX));
     }
 
     /// Waits for all frames.
@@ -228,20 +234,21 @@ impl Renderer {
         Ok(pose.advance(scene, time, |world| self.settings.view.at(scene, world))?)
     }
 
-    fn frame_data(&self, slot: usize, share: Share) -> FrameData {
+    fn frame_data(&self, slot: usize, share: Share, round: u32) -> FrameData {
         let [camera, previous_camera] = self.prepared.pose.cameras(self.settings.extent);
         let (origin_steps, log2_origin_step) = self.prepared.pose.origin_steps();
         let mut data = FrameData {
-            frame: self.frame,
+            frame: self.round,
+            round,
             camera,
             previous_camera,
             extent: self.settings.extent,
             seed: self.settings.seed,
             first_sample: self.first_sample,
-            jitter: self.jitter(self.frame),
-            previous_jitter: self.jitter(self.frame.saturating_sub(1)),
-            samples: self.samples as u32,
-            more_samples: self.samples.fract() as f32,
+            jitter: self.jitter(self.round),
+            previous_jitter: self.jitter(self.round.saturating_sub(1)),
+            samples: if self.settings.technique.rounds { 1 } else { self.samples as u32 },
+            more_samples: if self.settings.technique.rounds { 0.0 } else { self.samples.fract() as f32 },
             share_begin: share.begin,
             share_end: share.end,
             log2_origin_step,

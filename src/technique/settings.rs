@@ -54,8 +54,6 @@ pub enum RenderError {
     Camera(#[from] UnknownCamera),
     #[error(transparent)]
     Trace(#[from] crate::accel::TraceError),
-    #[error("technique '{technique}' takes at most {most} samples per pixel and frame, not {asked}; use more frames")]
-    TooManySamples { technique: &'static str, most: u32, asked: u32 },
     #[error("technique '{technique}' has no output '{name}'; it has {known}")]
     UnknownOutput { technique: &'static str, name: String, known: String },
 }

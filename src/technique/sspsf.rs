@@ -11,7 +11,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
     name: "sspsf",
     help: "one path per pixel; what arrives at its first diffuse vertex is averaged over similar vertices nearby on the screen",
     accumulates: false,
-    max_spp: 1,
+    rounds: true,
     extra_outputs: &[],
     defaults: &[],
     passes,
@@ -23,5 +23,6 @@ fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle,
     }
     let terms = options.kernel().add_with_terms(frame)?;
     let diffuse = sspsf::add(frame, &terms)?;
-    composite::add_filtered(frame, &terms, diffuse)
+    let radiance = composite::add_filtered(frame, &terms, diffuse)?;
+    options.mean_of_rounds(frame, radiance)
 }

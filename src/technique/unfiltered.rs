@@ -10,7 +10,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
     name: "unfiltered",
     help: "one path per pixel, its radiance terms kept apart and recombined; each frame stands alone",
     accumulates: false,
-    max_spp: 1,
+    rounds: true,
     extra_outputs: &[],
     defaults: &[],
     passes,
@@ -19,5 +19,6 @@ pub(super) const TECHNIQUE: Technique = Technique {
 fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
     gbuffer::add(frame)?;
     let terms = options.kernel().add_with_terms(frame)?;
-    composite::add(frame, &terms)
+    let radiance = composite::add(frame, &terms)?;
+    options.mean_of_rounds(frame, radiance)
 }

@@ -44,7 +44,7 @@ fn a_frame_allocates_nothing_on_host_and_device() {
     {
         let mut settings = Settings { technique, parameters: technique.parameters(), trace: structure.to_owned(), ..settings(16, 9) };
         // In as many submissions.
-        settings.spp = technique.max_spp.min(2);
+        settings.spp = 2;
         set(&mut settings, &[("paths.kernel", kernel), ("paths.per_submission", "1")]);
         let mut renderer = Renderer::new(&gpu, builtin("hall:10000"), settings).unwrap();
         (0..WARM_UP).for_each(|_| renderer.render_frame().unwrap());

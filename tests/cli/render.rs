@@ -75,11 +75,6 @@ fn names_that_nobody_knows_are_refused_with_those_that_there_are() {
 }
 
 #[test]
-fn more_samples_than_a_technique_takes_are_refused() {
-    refused(&["--spp", "2", "--technique", "unfiltered"], &["'unfiltered'", "at most 1", "not 2", "more frames"]);
-}
-
-#[test]
 fn values_out_of_range_are_refused_with_the_range() {
     refused(&["--set", "paths.max_bounces=99"], &["paths.max_bounces", "64"]);
     refused(&["--set", "paths.max_bounces=nan"], &["paths.max_bounces"]);

@@ -11,6 +11,7 @@ mod exact;
 mod kernels;
 mod motion;
 mod references;
+mod rounds;
 mod shared_scenes;
 mod switches;
 mod surfaces;
