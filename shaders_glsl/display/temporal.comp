@@ -65,9 +65,9 @@ float depth_at(ivec2 pixel) {
     return point.w < 0.0 ? MISS : dot(point.xyz - frame.camera.position, frame.camera.forward);
 }
 
-/// Unless retraced paths say that it has not.
-bool changed(ivec2 pixel) {
-    return imageLoad(change, pixel).x > 0.0 || !(imageLoad(vertices, pixel).w > 0.0);
+/// Unless retraced paths say that it has not, or nothing is there.
+bool changed(ivec2 pixel, float depth) {
+    return depth != MISS && (imageLoad(change, pixel).x > 0.0 || !(imageLoad(vertices, pixel).w > 0.0));
 }
 
 Surroundings look_around(ivec2 pixel) {
@@ -88,7 +88,7 @@ Surroundings look_around(ivec2 pixel) {
             around.slowest = min(around.slowest, moves);
             around.fastest = max(around.fastest, moves);
             if (EFFECT_OBJECT_ANIMATION && KNOWS_CHANGES) {
-                around.changes = around.changes || changed(ivec2(x, y));
+                around.changes = around.changes || changed(ivec2(x, y), depth);
             }
         }
     }

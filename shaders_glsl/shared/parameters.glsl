@@ -93,7 +93,7 @@ layout(constant_id = 137) const uint HPSF_TEMPORAL = 0;
 /// Which of a path's diffuse vertices is filtered. Second resembles final gathering (Binder, fig. 10): no borders or lost shadows in what is seen, whose own light stays as noisy as the path found it. No cost.
 layout(constant_id = 150) const uint HPSF_VERTEX = 0;
 //@ hpsf.second trace trace|cells
-/// What arrives at a path's second diffuse vertex: it is traced, or read from what a table of its own knows of it since earlier frames, as nhpsf reads its vertices (nhpsf.vertices, nhpsf.wider). Cells leave half of the noise of indirect light, and take away a third of the rays; light that changes comes late, so paths are traced where lights or objects move, and by the wavefront.
+/// What arrives at a path's second diffuse vertex: it is traced, or read from what a table of its own knows of it since earlier frames, as nhpsf reads its vertices (nhpsf.vertices, nhpsf.wider). Cells leave half of the variance of indirect light, and take away a quarter of the rays; light that changes comes late, so paths are traced where lights or objects move, and by the wavefront.
 layout(constant_id = 162) const uint HPSF_SECOND = 0;
 //@ nhpsf.form balanced balanced|paper
 /// What a vertex sends to the one before: what its cell knew in the last frame, or that and what the path itself has found there (Meijer, section 4.3), by which all indirect light counts twice. The same rays.

@@ -58,7 +58,7 @@ impl Calibration<'_> {
         let subject = Subject { gpu: self.gpu, scene: self.scene, settings: &truth, frame: 0 };
         let reference = ReferenceCache::open().reference(&subject, self.reference_samples(&truth)?)?;
         let samples = |technique: &'static Technique| {
-            SAMPLES.into_iter().filter(|&spp| spp <= technique.most_governed()).map(move |spp| (technique, spp))
+            SAMPLES.into_iter().filter(|&spp| spp <= technique.most_at_once()).map(move |spp| (technique, spp))
         };
         let all: Vec<(&Technique, u32)> = REGISTRY.iter().flat_map(samples).collect();
         let mut candidates = Vec::new();
@@ -72,7 +72,7 @@ impl Calibration<'_> {
                 technique: technique.name.to_owned(),
                 settings: Values::new(),
                 spp,
-                most_spp: technique.most_governed(),
+                most_spp: technique.most_at_once(),
                 ns_per_pixel: shots.timings.frame_ms_median * 1e6 / f64::from(size[0] * size[1]),
                 flip: accuracy::mean_flip(&shots.last, &reference)?,
             });

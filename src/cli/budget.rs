@@ -31,7 +31,7 @@ impl Budget {
         let choice = front.choose(&wish, width * height).context("nothing could be measured on this device")?;
         let technique = technique::find(&choice.candidate.technique).context("the calibration names a technique that there is not")?;
         let parameters = settings.parameters.changed_from(&settings.technique.parameters(), technique.parameters());
-        let governor = wish.budget_ms.map(|ms| Governor::new(ms, choice.samples, f64::from(technique.most_governed())));
+        let governor = wish.budget_ms.map(|ms| Governor::new(ms, choice.samples, f64::from(technique.most_at_once())));
         let settings = Settings { technique, parameters, spp: choice.samples.max(1.0) as u32, ..settings };
         Ok((Self { wish, choice, governor, observed: 0 }, settings))
     }

@@ -206,12 +206,7 @@ impl Table {
     pub fn learn(&self, frame: &mut FrameBuilder, terms: &Terms, vertices: &PathVertices) -> Result<(), GpuError> {
         nhpsf::transport(frame, self, terms, vertices)?;
         self.clear(frame);
-        if self.options.ordered || self.options.evicts {
-            nhpsf::claim(frame, self, vertices)?;
-        }
-        if self.options.evicts {
-            nhpsf::evict(frame, self, vertices)?;
-        }
+        self.give_slots(frame, None, || std::iter::once(vertices))?;
         nhpsf::collect(frame, self, vertices)?;
         self.merge(frame)
     }
@@ -229,9 +224,7 @@ impl Table {
         }
         self.clear(frame);
         let behind = || [&paths.behind, &paths.chains].into_iter().flatten().filter(|vertices| vertices.options.sampled() > 0);
-        if self.options.ordered || self.options.evicts {
-            self.give_slots(frame, terms, behind)?;
-        }
+        self.give_slots(frame, Some(terms), behind)?;
         self.collect(frame, terms)?;
         for vertices in behind() {
             nhpsf::collect(frame, self, vertices)?;
@@ -245,18 +238,26 @@ impl Table {
         Ok(Filtered { noisy: self.resolve(frame, terms)?, change })
     }
 
-    fn give_slots<'v, V>(&self, frame: &mut FrameBuilder, terms: &Terms, behind: impl Fn() -> V) -> Result<(), GpuError>
+    /// To the pixels' keys, if they are in the table, and those behind, where slots are given before samples are added.
+    fn give_slots<'v, V>(&self, frame: &mut FrameBuilder, terms: Option<&Terms>, behind: impl Fn() -> V) -> Result<(), GpuError>
     where
         V: Iterator<Item = &'v PathVertices>,
     {
+        if !(self.options.ordered || self.options.evicts) {
+            return Ok(());
+        }
         let samples = frame.pixels();
         let names = self.options.part.names();
-        self.claim(self.reads_points(frame.pass(names.claim, "filter/hpsf/claim_ordered"), terms), samples)?;
+        if let Some(terms) = terms {
+            self.claim(self.reads_points(frame.pass(names.claim, "filter/hpsf/claim_ordered"), terms), samples)?;
+        }
         for vertices in behind() {
             nhpsf::claim(frame, self, vertices)?;
         }
         if self.options.evicts {
-            self.evict(self.reads_points(frame.pass(names.evict, "filter/hpsf/evict"), terms), samples)?;
+            if let Some(terms) = terms {
+                self.evict(self.reads_points(frame.pass(names.evict, "filter/hpsf/evict"), terms), samples)?;
+            }
             for vertices in behind() {
                 nhpsf::evict(frame, self, vertices)?;
             }

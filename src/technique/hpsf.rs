@@ -7,6 +7,8 @@ use crate::filter::hpsf::{self, Options, Part, Paths, Table};
 use crate::filter::smooth::{self, Layer, Passes};
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
+use crate::paths::terms::Terms;
+use crate::paths::vertices::ListOptions;
 use crate::paths::{self, Kernel, gbuffer};
 use crate::scene::effects::Effect;
 
@@ -60,24 +62,29 @@ pub(super) fn passes_of(
 
 /// Paths; some of the last frame's, too, where cells want to know of changes and something moves that could make one. Where nothing does,
 /// they would find exactly none.
-///
-/// Where nothing moves, what arrives at a second vertex may be what cells know of it.
 fn add_paths(frame: &mut FrameBuilder, options: PassOptions) -> Result<Paths, GpuError> {
     let moves = options.effects.contains(Effect::ObjectAnimation);
-    if !moves && options.parameters.number("hpsf.second") == 1.0 && matches!(options.kernel(), Kernel::Megakernel) {
-        let list = nhpsf::list_of(options);
-        let keys = u64::from(frame.pixels());
-        let cells = Table::new(frame, Options { vertices: list.sampled(), ..table_options(options, Part::Behind) })?;
-        let (terms, vertices) = paths::add_with_vertices(frame, list, |pass| cells.looks_up(pass, keys))?;
-        cells.learn(frame, &terms, &vertices)?;
-        return Ok(Paths { terms, behind: None, chains: None, retraced: None });
+    if options.parameters.number("hpsf.time") == HYBRID && moves {
+        let (terms, retraced) = options.kernel().add_with_retraced(frame, options.parameters.number("hpsf.retrace") as u32)?;
+        return Ok(Paths { terms, behind: None, chains: None, retraced: Some(retraced) });
     }
-    let retraces = options.parameters.number("hpsf.time") == HYBRID && moves;
-    if !retraces {
-        return Ok(Paths { terms: options.kernel().add_with_terms(frame)?, behind: None, chains: None, retraced: None });
-    }
-    let (terms, retraced) = options.kernel().add_with_retraced(frame, options.parameters.number("hpsf.retrace") as u32)?;
-    Ok(Paths { terms, behind: None, chains: None, retraced: Some(retraced) })
+    let list = nhpsf::list_of(options);
+    let reads = options.parameters.number("hpsf.second") == 1.0 && list.sampled() > 0;
+    let terms = if reads && !moves && matches!(options.kernel(), Kernel::Megakernel) {
+        add_paths_to_second_vertices(frame, options, list)?
+    } else {
+        options.kernel().add_with_terms(frame)?
+    };
+    Ok(Paths { terms, behind: None, chains: None, retraced: None })
+}
+
+/// What arrives at a second vertex is what a table of its own knows of it, whose cells come to know of light that changes too late.
+fn add_paths_to_second_vertices(frame: &mut FrameBuilder, options: PassOptions, list: ListOptions) -> Result<Terms, GpuError> {
+    let keys = u64::from(frame.pixels());
+    let cells = Table::new(frame, Options { vertices: list.sampled(), ..table_options(options, Part::Behind) })?;
+    let (terms, vertices) = paths::add_with_vertices(frame, list, |pass| cells.looks_up(pass, keys))?;
+    cells.learn(frame, &terms, &vertices)?;
+    Ok(terms)
 }
 
 /// Direct and indirect light, or twice their sum; and where it changes.

@@ -4,7 +4,7 @@ use super::{Technique, hpsf};
 
 pub(super) const TECHNIQUE: Technique = Technique {
     name: "hpsf+",
-    help: "hpsf at fine cells, direct and indirect light apart, smoothed over the screen as far as noise goes, and antialiased over frames",
+    help: "hpsf at fine cells, direct and indirect light apart, paths short where nothing moves, smoothed over the screen as far as noise goes, and antialiased over frames",
     defaults: &[
         ("paths.scramble", "tile"),
         ("frame.jitter", "on"),

@@ -46,8 +46,8 @@ pub struct Technique {
 }
 
 impl Technique {
-    /// Samples per pixel that are chosen for a frame, from many, where only a budget is given. What goes in rounds is best seen with more frames.
-    pub fn most_governed(&self) -> u32 {
+    /// Samples per pixel that its passes take; what is asked for beyond goes in rounds, and is not chosen where only a budget is given.
+    pub fn most_at_once(&self) -> u32 {
         if self.rounds { 1 } else { u32::MAX }
     }
 

@@ -33,7 +33,7 @@ pub struct Renderer {
     round: u32,
     /// Frame of the animation that frame 0 shows.
     first_frame: u32,
-    /// Of the frame to come; at least 1.
+    /// Of each round of the frame to come; at least 1.
     samples: f64,
     /// Samples per pixel that earlier frames have taken of the sequence.
     first_sample: u32,
@@ -71,7 +71,7 @@ impl Renderer {
             frame: 0,
             round: 0,
             first_frame: 0,
-            samples: f64::from(settings.spp),
+            samples: f64::from(settings.spp.min(technique.most_at_once())),
             first_sample: 0,
             gpu: gpu.clone(),
             graph,
@@ -97,10 +97,9 @@ impl Renderer {
     /// The device is lost.
     pub fn render_frame_telling(&mut self, mut progress: impl FnMut(f64)) -> Result<(), RenderError> {
         let mut cpu_ms = 0.0;
-        let rounds = if self.settings.technique.rounds { self.settings.spp } else { 1 };
+        let (rounds, samples) = (self.rounds(), self.samples.ceil());
         for round in 0..rounds {
-            let samples = if self.settings.technique.rounds { 1.0 } else { self.samples };
-            for share in shares(samples, self.most_samples_at_once()) {
+            for share in shares(self.samples, self.most_samples_at_once()) {
                 let slot = self.ring.acquire()?;
                 self.collect(slot);
                 let mut clock = Clock::start();
@@ -110,14 +109,19 @@ impl Renderer {
                 self.ends[slot] = share.ends && round + 1 == rounds;
                 self.submit(slot, share, round)?;
                 cpu_ms += clock.lap();
-                progress((f64::from(round) + f64::from(share.end) / samples.ceil()) / f64::from(rounds));
+                progress((f64::from(round) + f64::from(share.end) / samples) / f64::from(rounds));
             }
-            self.first_sample = self.first_sample.wrapping_add(samples.ceil() as u32);
+            self.first_sample = self.first_sample.wrapping_add(samples as u32);
             self.round += 1;
         }
         self.recorder.add_cpu(cpu_ms);
         self.frame += 1;
         Ok(())
+    }
+
+    /// Of a frame.
+    fn rounds(&self) -> u32 {
+        if self.settings.technique.rounds { self.settings.spp } else { 1 }
     }
 
     fn most_samples_at_once(&self) -> u32 {
@@ -154,9 +158,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Samples per pixel of the frames to come, at least 1; of a fraction, so many pixels take one more. Rounds stay as many as they are.
+    /// Samples per pixel of the frames to come, at least 1; of a fraction, so many pixels take one more. Where they go in rounds, these stay as
+    /// many as they are.
     pub fn set_samples(&mut self, samples: f64) {
-        self.samples = samples.clamp(1.0, f64::from(u32::MAX));
+        self.samples = samples.clamp(1.0, f64::from(self.settings.technique.most_at_once()));
     }
 
     /// Waits for all frames.
@@ -247,8 +252,8 @@ impl Renderer {
             first_sample: self.first_sample,
             jitter: self.jitter(self.round),
             previous_jitter: self.jitter(self.round.saturating_sub(1)),
-            samples: if self.settings.technique.rounds { 1 } else { self.samples as u32 },
-            more_samples: if self.settings.technique.rounds { 0.0 } else { self.samples.fract() as f32 },
+            samples: self.samples as u32,
+            more_samples: self.samples.fract() as f32,
             share_begin: share.begin,
             share_end: share.end,
             log2_origin_step,

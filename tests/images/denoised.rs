@@ -1,14 +1,12 @@
-//! What `hpsf+` is for: one frame at one sample per pixel.
+//! What `hpsf+` is for: few frames at one sample per pixel.
 
 use crate::common;
 use crate::common::render::{builtin, render, render_frames, set, settings};
 use pathspace::display::ToneMapping;
 use pathspace::metrics::accuracy::{Reference, Shot, accuracy};
 
-/// Error over that of the same samples without a filter, against 256 samples. Measured: FLIP 0.70, relMSE 0.05; at 256x144,
-/// where less of the error is aliasing, 0.54 and 0.02.
-#[test]
-fn one_frame_of_hpsf_plus_has_little_of_the_noise() {
+/// FLIP and relMSE of what hpsf+ makes of so many frames of cornell, 128x72, over those of as many samples without a filter; against 256.
+fn error_over_unfiltered(frames: u32) -> [f64; 2] {
     let gpu = common::gpu();
     let scene = builtin("cornell");
     let settings = settings(128, 72);
@@ -16,12 +14,28 @@ fn one_frame_of_hpsf_plus_has_little_of_the_noise() {
     set(&mut many, &[("textures.level", "zero")]);
     many.spp = 64;
     let truth = render(&gpu, &scene, &many, 4).mean;
-    let [noisy, filtered] = ["unfiltered", "hpsf+"].map(|technique| {
-        let picture = render_frames(&gpu, &scene, &settings, technique, 1).picture().unwrap();
+    let unfiltered = if frames == 1 { "unfiltered" } else { "reference" };
+    let [noisy, filtered] = [unfiltered, "hpsf+"].map(|technique| {
+        let picture = render_frames(&gpu, &scene, &settings, technique, frames).picture().unwrap();
         let reference = Reference { mean: &truth, variance: None, before: None };
         let figures = accuracy(&[Shot { last: &picture, before: None }], &reference, &ToneMapping::default()).unwrap();
         ["flip", "relmse"].map(|key| figures[key].value)
     });
-    let [flip, relmse] = [filtered[0] / noisy[0], filtered[1] / noisy[1]];
-    assert!(flip < 0.75 && relmse < 0.1, "FLIP {flip}, relMSE {relmse}");
+    [filtered[0] / noisy[0], filtered[1] / noisy[1]]
+}
+
+/// Measured: FLIP 0.57, relMSE 0.05; with means in place of planes (filter/smooth/step.comp) 0.66 and 0.05. At 256x144, where less of the error is
+/// aliasing, FLIP is 0.46.
+#[test]
+fn one_frame_of_hpsf_plus_has_little_of_the_noise() {
+    let [flip, relmse] = error_over_unfiltered(1);
+    assert!(flip < 0.62 && relmse < 0.06, "FLIP {flip}, relMSE {relmse}");
+}
+
+/// Measured: FLIP 0.85, relMSE 0.19, much of it the truth's own noise; with means 1.02 and 0.25. At 256x144 and against the truth of a benchmark
+/// 0.61 and 0.11.
+#[test]
+fn sixteen_frames_of_hpsf_plus_are_better_than_as_many_samples() {
+    let [flip, relmse] = error_over_unfiltered(16);
+    assert!(flip < 0.93 && relmse < 0.22, "FLIP {flip}, relMSE {relmse}");
 }

@@ -7,7 +7,7 @@ use pathspace::display::Image;
 use pathspace::gpu::Gpu;
 use pathspace::scene::animation::{Animation, Channel, Interpolation, Keys};
 use pathspace::scene::{Instance, Material, Scene};
-use pathspace::technique::Renderer;
+use pathspace::technique::{Renderer, Settings};
 
 /// The lamp is most of the light that the camera gets, and three pixels high: a row of pixels more or less is a third of it.
 #[test]
@@ -49,6 +49,22 @@ fn a_moving_lamp_leaves_no_trail() {
     };
     let [lamp, remembered] = ["unfiltered", "hpsf+"].map(bright);
     assert!(lamp > 10 && 2 * remembered < 3 * lamp, "{remembered} of {lamp}");
+}
+
+/// Where retraced paths tell of no change, history is as long and as whole as if nothing could move; but at what has no vertex to retrace, the lamp.
+#[test]
+fn what_stands_still_keeps_its_history_where_something_may_move() {
+    let gpu = common::gpu();
+    let picture = |values: &[(&str, &str)]| {
+        let mut settings = Settings { all_effects: true, ..settings(64, 36) };
+        set(&mut settings, values);
+        render_frames(&gpu, &builtin("cornell"), &settings, "hpsf+", 12).picture().unwrap()
+    };
+    let [found, whole] = [&[][..], &[("temporal.clamp", "0"), ("temporal.moving", "64")]].map(picture);
+    let seen = |pixel: &[f32; 3]| pixel.iter().sum::<f32>() > 0.0;
+    let pairs = || found.pixels.iter().zip(&whole.pixels).filter(|(a, _)| seen(a));
+    let (same, all) = (pairs().filter(|(a, b)| a == b).count(), pairs().count());
+    assert!(all > 1000 && 20 * same > 19 * all, "{same} of {all}");
 }
 
 /// Frames that the sphere moves for, and its way: three times its radius.

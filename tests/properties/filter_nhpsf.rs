@@ -5,6 +5,7 @@ use crate::common::floor::node;
 use crate::common::render::{builtin, mean, output, render_frames, set, settings};
 use glam::{DVec3, Vec3};
 use pathspace::display::Image;
+use pathspace::metrics::statistics::BatchMeans;
 use pathspace::scene::{CameraView, Instance, Material, Mesh, Scene};
 use pathspace::technique::{Settings, ViewChoice};
 
@@ -165,6 +166,38 @@ fn closed_scenes_are_as_bright_as_the_path_tracer_finds_them() {
         let error = (of_truth + of_found).sqrt() / truth;
         assert!((found / truth - 1.0).abs() < 0.01 + 4.0 * error, "{name}: {} +- {error}", found / truth);
     }
+}
+
+/// Of what a filter vertex receives indirectly, after so many frames: variance over seeds, the mean over pixels.
+fn variance_of_indirect_light(settings: &Settings, frames: u32) -> f64 {
+    let mut renderer = render_frames(&common::gpu(), &builtin("cornell"), settings, "hpsf", 0);
+    let mut pixels = vec![BatchMeans::default(); (settings.extent[0] * settings.extent[1]) as usize];
+    for seed in 1..=8 {
+        renderer.restart(seed, 0).unwrap();
+        (0..frames).for_each(|_| renderer.render_frame().unwrap());
+        renderer.finish().unwrap();
+        let received = output(&renderer, "diffuse_indirect");
+        pixels.iter_mut().zip(received.pixels).for_each(|(pixel, value)| pixel.add(f64::from(value[0])));
+    }
+    pixels.iter().map(BatchMeans::variance_of_mean).sum::<f64>() / pixels.len() as f64
+}
+
+/// Where second vertices are read from cells: as bright as path tracing to 32 bounces, as above; fewer rays, and less noise.
+#[test]
+fn second_vertices_that_are_read_bring_the_same_light_by_fewer_rays_and_with_less_noise() {
+    let mut settings = settings(48, 32);
+    set(&mut settings, &[("hpsf.width", "4"), ("hpsf.cells", "4"), ("hpsf.recency", "1"), ("paths.max_bounces", "32")]);
+    let (truth, of_truth) = mean_of_runs(&builtin("cornell"), &settings, "unfiltered", 128);
+    set(&mut settings, &[("paths.max_bounces", "8")]);
+    let [traced, read] = ["trace", "cells"].map(|second| {
+        set(&mut settings, &[("hpsf.second", second)]);
+        let mut renderer = render_frames(&common::gpu(), &builtin("cornell"), &settings, "hpsf", 8);
+        (renderer.timings().unwrap().rays.per_pixel, variance_of_indirect_light(&settings, 8))
+    });
+    assert!(read.0 < 0.8 * traced.0 && read.1 < 0.6 * traced.1, "{read:?} {traced:?}");
+    let (found, of_found) = mean_of_runs(&builtin("cornell"), &settings, "hpsf", 32);
+    let error = (of_truth + of_found).sqrt() / truth;
+    assert!((found / truth - 1.0).abs() < 0.01 + 4.0 * error, "{} +- {error}", found / truth);
 }
 
 /// hpsf's cells at a later diffuse vertex: what lies in front of it is the path's own, and the sum is the same.

@@ -11,10 +11,9 @@
 // A mean of taps that all lie on one side is that of a place beside the pixel: rims of walls, where light changes most, would take on the
 // brightness of their middles. So a plane is fitted to the taps, and read where the pixel is (local linear regression: Cleveland 1979;
 // Moon, Carr and Yoon 2014 for pictures). Between taps on all sides that is their mean. What the slope adds counts as far as it is more than
-// its own standard error (James and Stein's estimate, its positive part), or the noise of few samples would be extrapolated: without that,
-// the hall's first frame has a relMSE of 0.16 instead of 0.12. FLIP of the first and the 16th frame, with means and luminances, then with
-// planes and colours: cornell 0.054 and 0.034, 0.051 and 0.028; Sponza 0.148 and 0.101, 0.150 and 0.100; the hall 0.251 and 0.188, 0.252
-// and 0.184.
+// its own standard error (James and Stein's estimate, its positive part), or the noise of few samples would be extrapolated. Measured (hpsf+ on
+// cornell, 256x144, four seeds): FLIP of the first frame 0.0508, of the 16th 0.0231; with means 0.0534 and 0.0260, in 0.92 of a frame's time; with
+// planes and luminances 0.0510 and 0.0235.
 //
 // Two pixels are as similar one way as the other: the larger of their variances counts. By the centre's alone, as in the paper, a bright
 // sample takes in its dark surroundings and they do not take it in, and 5 % of Sponza's light is lost in one frame.
