@@ -12,20 +12,12 @@
 //
 // Deviations and why: history counts where its depth is in the range of the depths around the pixel now, not where it is that of the
 // pixel's one sample: at an edge the offset decides which surface the sample meets.
+#include "display/history.glsl"
 #include "lib/storage.glsl"
-#include "shared/bindings.glsl"
 
 layout(local_size_x = 8, local_size_y = 4) in;
 
 layout(set = 1, binding = 0, COLOR_FORMAT) readonly uniform image2D radiance;
-/// Pixels, to where the point was; z: change of its depth, metres; w: 1 where it was in front of the camera.
-layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
-/// w: distance, negative for a miss.
-layout(set = 1, binding = 2, rgba32f) readonly uniform image2D position;
-/// rgb: mean; w: frames that it is over.
-layout(set = 1, binding = 3, COLOR_FORMAT) readonly uniform image2D known;
-/// Along the view, metres.
-layout(set = 1, binding = 4, r32f) readonly uniform image2D known_depth;
 layout(set = 1, binding = 5, COLOR_FORMAT) writeonly uniform image2D temporal;
 layout(set = 1, binding = 6, r32f) writeonly uniform image2D temporal_depth;
 
@@ -35,13 +27,6 @@ layout(set = 1, binding = 7, r32f) readonly uniform image2D change;
 layout(set = 1, binding = 8, rgba32f) readonly uniform image2D vertices;
 
 layout(constant_id = 234) const bool KNOWS_CHANGES = false;
-
-/// What was not hit is as far as motion vectors take it to be (paths/gbuffer.comp).
-const float MISS = 1e6;
-/// Of the depth, by which two frames may disagree about a surface.
-const float TOLERANCE = 0.05;
-/// Pixels; motion below it is rounding, and would blur a still picture.
-const float STILL = 1e-2;
 
 /// Pixels per frame by which neighbours move apart where one passes in front of the other, and frames that count there.
 const float APART = 0.1;
@@ -59,11 +44,6 @@ struct Surroundings {
     /// Something may look different from the last frame.
     bool changes;
 };
-
-float depth_at(ivec2 pixel) {
-    vec4 point = imageLoad(position, pixel);
-    return point.w < 0.0 ? MISS : dot(point.xyz - frame.camera.position, frame.camera.forward);
-}
 
 /// Unless retraced paths say that it has not, or nothing is there.
 bool changed(ivec2 pixel, float depth) {
@@ -99,29 +79,6 @@ Surroundings look_around(ivec2 pixel) {
     return around;
 }
 
-/// Mean (rgb) and frames (w) of what earlier frames know of the point: bilinear, of the texels whose depth fits; w is 0 where none does.
-vec4 history_at(vec2 place, float nearest, float farthest) {
-    vec2 corner = floor(place);
-    vec2 part = place - corner;
-    vec4 sum = vec4(0.0);
-    float weights = 0.0;
-    for (int i = 0; i < 4; i++) {
-        ivec2 tap = ivec2(i & 1, i >> 1);
-        ivec2 texel = ivec2(corner) + tap;
-        if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(frame.extent)))) {
-            continue;
-        }
-        float depth = imageLoad(known_depth, texel).x;
-        vec4 value = imageLoad(known, texel);
-        vec2 share = mix(1.0 - part, part, equal(tap, ivec2(1)));
-        bool fits = depth > nearest * (1.0 - TOLERANCE) && depth < farthest * (1.0 + TOLERANCE) && value.w > 0.0;
-        float weight = fits ? share.x * share.y : 0.0;
-        sum += weight * value;
-        weights += weight;
-    }
-    return weights > 0.0 ? sum / weights : vec4(0.0);
-}
-
 /// Frames that count at most.
 float most_frames(Surroundings around) {
     vec2 apart = around.fastest - around.slowest;
@@ -139,11 +96,7 @@ void main() {
     vec3 now = imageLoad(radiance, pixel).rgb;
     vec4 moved = imageLoad(motion, pixel);
     Surroundings around = look_around(pixel);
-    vec2 step = dot(moved.xy, moved.xy) > STILL * STILL ? moved.xy : vec2(0.0);
-    vec4 before = vec4(0.0);
-    if (moved.w > 0.0) {
-        before = history_at(vec2(pixel) + step, around.nearest + moved.z, around.farthest + moved.z);
-    }
+    vec4 before = history_of(pixel, moved, around.nearest, around.farthest);
     if (around.changes && parameters.temporal_clamp > 0.0) {
         vec3 allowed = parameters.temporal_clamp * around.deviation;
         before.rgb = clamp(before.rgb, around.mean - allowed, around.mean + allowed);

@@ -4,9 +4,28 @@
 //! its depth. Reads 68 bytes per pixel (neighbours come from caches), 20 more where changes are
 //! known, and writes 20; 52 and 12 at fp16.
 
-use crate::frame::{FrameBuilder, ImageHandle};
+use crate::frame::{FrameBuilder, History, ImageHandle, PassBuilder};
 use crate::gpu::{GpuError, vk};
 use crate::paths::gbuffer::GBuffer;
+
+/// What earlier frames know.
+#[derive(Debug, Clone, Copy)]
+pub struct Known {
+    mean: History<ImageHandle>,
+    depth: History<ImageHandle>,
+}
+
+impl Known {
+    pub fn new(frame: &mut FrameBuilder) -> Result<Self, GpuError> {
+        Ok(Self { mean: frame.color_history("temporal")?, depth: frame.image_history("temporal_depth", vk::Format::R32_SFLOAT)? })
+    }
+
+    /// For a pass whose shader includes display/history.glsl.
+    pub fn looks_up<'a, 'b>(&self, pass: PassBuilder<'a, 'b>, gbuffer: &GBuffer) -> PassBuilder<'a, 'b> {
+        let pass = pass.reads("motion", gbuffer.motion).reads("position", gbuffer.position);
+        pass.reads("known", self.mean.previous).reads("known_depth", self.depth.previous)
+    }
+}
 
 /// What is known of changes since the last frame.
 #[derive(Debug, Clone, Copy)]
@@ -20,18 +39,20 @@ pub struct Changes {
 /// Specialization constant.
 const KNOWS_CHANGES: u32 = 234;
 
-pub fn add(frame: &mut FrameBuilder, gbuffer: &GBuffer, radiance: ImageHandle, changes: Option<Changes>) -> Result<ImageHandle, GpuError> {
-    let mean = frame.color_history("temporal")?;
-    let depth = frame.image_history("temporal_depth", vk::Format::R32_SFLOAT)?;
-    let pass = frame.pass("temporal", "display/temporal").reads("radiance", radiance);
-    let pass = pass.reads("motion", gbuffer.motion).reads("position", gbuffer.position);
-    let pass = pass.reads("known", mean.previous).writes("temporal", mean.current);
-    let pass = pass.constant(KNOWS_CHANGES, changes.is_some().into());
+pub fn add(
+    frame: &mut FrameBuilder,
+    gbuffer: &GBuffer,
+    known: &Known,
+    radiance: ImageHandle,
+    changes: Option<Changes>,
+) -> Result<ImageHandle, GpuError> {
+    let pass = frame.pass("temporal", "display/temporal").constant(KNOWS_CHANGES, changes.is_some().into());
+    let pass = known.looks_up(pass.reads("radiance", radiance), gbuffer);
     let pass = match changes {
         Some(Changes { change, vertices }) => pass.reads("change", change).reads("vertices", vertices),
         // Bound, and not read.
-        None => pass.reads("change", depth.previous).touching(0).reads("vertices", gbuffer.position).touching(0),
+        None => pass.reads("change", known.depth.previous).touching(0).reads("vertices", gbuffer.position).touching(0),
     };
-    pass.reads("known_depth", depth.previous).writes("temporal_depth", depth.current).add()?;
-    Ok(mean.current)
+    pass.writes("temporal", known.mean.current).writes("temporal_depth", known.depth.current).add()?;
+    Ok(known.mean.current)
 }

@@ -3,8 +3,10 @@
 //! Takes part of the light and the filter vertices; returns it smoothed, after passes whose taps are 1, 2, 4, ... pixels apart. No history.
 //! A pass reads 40 bytes per pixel (its other taps come from caches) and writes 16, 32 and 8 at fp16.
 
+use crate::display::temporal::Known;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::{GpuError, vk};
+use crate::paths::gbuffer::GBuffer;
 use crate::paths::terms::{FilterVertex, Terms};
 
 /// Specialization constants: pixels between taps, and whether few samples are taken to be noisier than they seem.
@@ -71,10 +73,14 @@ pub fn add(frame: &mut FrameBuilder, vertex: &FilterVertex, noisy: Noisy, layer:
     Ok(smoothed)
 }
 
-/// Both specular terms in one image.
-pub fn add_specular(frame: &mut FrameBuilder, terms: &Terms) -> Result<Noisy, GpuError> {
+/// Both specular terms in one image, as noisy as they will be in a mean over frames where there is `history`.
+pub fn add_specular(frame: &mut FrameBuilder, terms: &Terms, history: Option<&(GBuffer, Known)>) -> Result<Noisy, GpuError> {
     let noisy = Noisy { mean: frame.color_image("specular")?, samples: frame.image("specular_samples", vk::Format::R32_UINT)? };
-    let pass = frame.pass("smooth specular", "filter/smooth/specular").writes("specular", noisy.mean).writes("samples", noisy.samples);
+    let pass = match history {
+        Some((gbuffer, known)) => known.looks_up(frame.pass("smooth specular", "filter/smooth/specular_history"), gbuffer),
+        None => frame.pass("smooth specular", "filter/smooth/specular"),
+    };
+    let pass = pass.writes("specular", noisy.mean).writes("samples", noisy.samples);
     pass.reads("specular_direct", terms.specular_direct).reads("specular_indirect", terms.specular_indirect).add()?;
     Ok(noisy)
 }

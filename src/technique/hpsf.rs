@@ -1,12 +1,13 @@
 //! `hpsf`: the radiance behind the filter vertex, averaged over cells of the world that a hash table keeps.
 
 use super::{PassOptions, Technique, nhpsf};
-use crate::display::temporal::Changes;
+use crate::display::temporal::{Changes, Known};
 use crate::display::{composite, temporal};
 use crate::filter::hpsf::{self, Options, Part, Paths, Table};
 use crate::filter::smooth::{self, Layer, Passes};
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
+use crate::paths::gbuffer::GBuffer;
 use crate::paths::terms::Terms;
 use crate::paths::vertices::ListOptions;
 use crate::paths::{self, Kernel, gbuffer};
@@ -42,6 +43,10 @@ pub(super) fn passes_of(
     let over_frames = options.parameters.number("hpsf.temporal") == 1.0;
     let wanted = over_frames || options.wants(&gbuffer::OUTPUTS);
     let gbuffer = wanted.then(|| gbuffer::add(frame)).transpose()?;
+    let history = match gbuffer {
+        Some(gbuffer) if over_frames => Some((gbuffer, Known::new(frame)?)),
+        _ => None,
+    };
     let part = if splits { Part::Direct } else { Part::Both };
     let table = Table::new(frame, Options { vertices, ..table_options(options, part) })?;
     let mut further_table = |wanted: bool, part| wanted.then(|| Table::new(frame, table_options(options, part))).transpose();
@@ -49,14 +54,14 @@ pub(super) fn passes_of(
     let glossy = further_table(options.parameters.number("hpsf.glossy") == 1.0, Part::Glossy)?;
     let paths = add_paths(frame, &table)?;
     let (diffuse, change) = filter_diffuse(frame, &table, indirect.as_ref(), &paths, options)?;
-    let specular = filter_specular(frame, glossy.as_ref(), &paths, options)?;
+    let specular = filter_specular(frame, glossy.as_ref(), &paths, history.as_ref(), options)?;
     let radiance = composite::add_parts(frame, &paths.terms, diffuse, specular)?;
-    match gbuffer {
-        Some(gbuffer) if over_frames => {
+    match history {
+        Some((gbuffer, known)) => {
             let changes = change.map(|change| Changes { change, vertices: paths.terms.vertex.position });
-            temporal::add(frame, &gbuffer, radiance, changes)
+            temporal::add(frame, &gbuffer, &known, radiance, changes)
         }
-        _ => options.mean_of_rounds(frame, radiance),
+        None => options.mean_of_rounds(frame, radiance),
     }
 }
 
@@ -115,13 +120,14 @@ fn filter_specular(
     frame: &mut FrameBuilder,
     glossy: Option<&Table>,
     paths: &Paths,
+    history: Option<&(GBuffer, Known)>,
     options: PassOptions,
 ) -> Result<[ImageHandle; 2], GpuError> {
     let (terms, passes) = (&paths.terms, smoothing(options, "hpsf.smooth_specular"));
     let noisy = match glossy {
         Some(table) => table.filter(frame, &Paths { behind: None, chains: None, ..*paths })?.noisy,
         None if passes.count == 0 => return Ok([terms.specular_direct, terms.specular_indirect]),
-        None => smooth::add_specular(frame, terms)?,
+        None => smooth::add_specular(frame, terms, history)?,
     };
     Ok([smooth::add(frame, &terms.vertex, noisy, &smooth::SPECULAR, passes)?; 2])
 }

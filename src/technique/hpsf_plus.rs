@@ -14,7 +14,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
         ("hpsf.split", "on"),
         ("hpsf.smooth", "4"),
         ("hpsf.smooth_indirect", "5"),
-        ("hpsf.smooth_specular", "2"),
+        ("hpsf.smooth_specular", "3"),
         ("hpsf.lookups", "0"),
         ("hpsf.levels", "1"),
         ("hpsf.width", "3"),

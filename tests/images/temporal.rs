@@ -38,6 +38,27 @@ fn g_buffer_and_terms_share_the_offset() {
     assert!(agree(&output(&centres, "position")) < seen / 2, "the third frame's offset is not zero");
 }
 
+/// What the picture's history will average is smoothed the less: as if it were so many samples. What has come into view has no history.
+#[test]
+fn smoothing_of_other_lobes_knows_how_long_a_point_has_been_seen() {
+    let gpu = common::gpu();
+    let mut settings = settings(64, 36);
+    settings.outputs = vec!["specular_samples".to_owned(), "filter_position".to_owned()];
+    let shares = |scene: &str, frames: u32| {
+        let renderer = render_frames(&gpu, &builtin(scene), &settings, "hpsf+", frames);
+        let [samples, vertices] = ["specular_samples", "filter_position"].map(|name| output(&renderer, name));
+        let seen = samples.pixels.iter().zip(&vertices.pixels).filter(|(_, vertex)| **vertex != [0.0; 3]);
+        let seen: Vec<f32> = seen.map(|(samples, _)| samples[0]).collect();
+        let share = |long: f32| seen.iter().filter(|&&samples| samples >= long).count() as f64 / seen.len() as f64;
+        [1.0 - share(2.0), share(0.7 * frames as f32)]
+    };
+    assert_eq!(shares("material", 1), [1.0; 2]);
+    let [_, still] = shares("material", 6);
+    let [new, _] = shares("hall-flight", 6);
+    assert!(still > 0.9, "{still}");
+    assert!(new > 0.01 && new < 0.2, "{new}");
+}
+
 /// Of all that a picture of several frames can remember, the lamp is the brightest.
 #[test]
 fn a_moving_lamp_leaves_no_trail() {
