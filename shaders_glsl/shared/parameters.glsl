@@ -174,6 +174,9 @@ struct Parameters {
     //@ hpsf.lookups 1 0..8 cells
     /// Cells that a pixel's radiance is the mean of, each found by a jitter of its own; 0: the cell that the pixel's sample went to. More remove the jitter's noise, at one lookup each.
     uint hpsf_lookups;
+    //@ hpsf.iterations 1 1..4
+    /// How often the radiance is filtered: each time after the first, what pixels have got goes through cells of this frame alone, with other jitters. More: smoother and wider, where there is hpsf.jitter. Each costs the table's passes over pixels and slots once more; more than one, whatever their number, 20 bytes a cell and 16 a pixel. 1: no cost.
+    uint hpsf_iterations;
     //@ hpsf.levels 2 1..4 levels
     /// Resolutions that samples are added to, each twice as coarse as the one before; cells with few samples are looked up coarser. One insertion each.
     uint hpsf_levels;

@@ -9,9 +9,10 @@
 //! sums updated. merge: over slots, 4 bytes read each, and for those taken 32 (16) of sums, 16 of seed and 16 of
 //! mean. resolve: 56 bytes read and 20 written per pixel, 20 read per lookup and level. Where one of [`STATISTICS`] is asked for, a
 //! fourth pass puts out what became of the insertions, and a fifth before it whose keys the slots hold. hpsf/changes.rs lets cells
-//! forget where light has changed.
+//! forget where light has changed, and hpsf/iterate.rs filters again what has been filtered.
 
 mod changes;
+mod iterate;
 
 use super::nhpsf;
 use super::smooth::Noisy;
@@ -20,12 +21,14 @@ use crate::gpu::{GpuError, vk};
 use crate::paths::Retraced;
 use crate::paths::terms::Terms;
 use crate::paths::vertices::PathVertices;
+use iterate::Targets;
 
 /// Specialization constants.
 const CAPACITY: u32 = 221;
 const SAMPLE_BITS: u32 = 222;
 const FLOAT_SUMS: u32 = 223;
 const PART: u32 = 231;
+const ITERATION: u32 = 235;
 
 /// Names of outputs about the table: slots looked at for each pixel's sample, its failed insertions, those that share another key's slot;
 /// slots, and taken ones.
@@ -62,6 +65,7 @@ struct Names {
     forget: &'static str,
     change: &'static str,
     mean: &'static str,
+    mean_before: &'static str,
     samples: &'static str,
 }
 
@@ -79,9 +83,10 @@ impl Part {
                 forget: "hpsf forget",
                 change: "hpsf_change",
                 mean: "diffuse",
+                mean_before: "diffuse_before",
                 samples: "hpsf_samples",
             },
-            Self::Direct => Names { mean: "direct", ..Self::Both.names() },
+            Self::Direct => Names { mean: "direct", mean_before: "direct_before", ..Self::Both.names() },
             Self::Indirect => Names {
                 clear: "hpsf clear indirect",
                 claim: "hpsf claim indirect",
@@ -93,6 +98,7 @@ impl Part {
                 forget: "hpsf forget indirect",
                 change: "hpsf_change_indirect",
                 mean: "indirect",
+                mean_before: "indirect_before",
                 samples: "hpsf_samples_indirect",
             },
             Self::Glossy => Names {
@@ -106,6 +112,7 @@ impl Part {
                 forget: "hpsf forget glossy",
                 change: "specular_change",
                 mean: "specular",
+                mean_before: "specular_before",
                 samples: "specular_samples",
             },
             Self::Behind => Names { clear: "nhpsf clear", merge: "nhpsf merge", ..Self::Both.names() },
@@ -132,6 +139,8 @@ pub struct Options {
     pub evicts: bool,
     /// Float atomics, where the device has them.
     pub float_sums: bool,
+    /// How often pixels are filtered, 1 or more.
+    pub iterations: u32,
     /// Put out [`STATISTICS`].
     pub statistics: bool,
 }
@@ -167,6 +176,8 @@ pub struct Table {
     sums: BufferHandle,
     float_sums: bool,
     options: Options,
+    /// How often what it filters has been filtered before.
+    iteration: u32,
     /// Of a frame's samples: at most one per pixel, vertex and level.
     insertions: u64,
 }
@@ -198,6 +209,7 @@ impl Table {
             sums: frame.kept_buffer("hpsf sums", capacity * sums)?,
             float_sums,
             options,
+            iteration: 0,
             insertions: u64::from(frame.pixels()) * u64::from(options.levels) * u64::from(options.vertices),
         })
     }
@@ -235,7 +247,9 @@ impl Table {
         if self.options.statistics {
             self.statistics(frame, terms)?;
         }
-        Ok(Filtered { noisy: self.resolve(frame, terms)?, change })
+        let targets = Targets::new(frame, self)?;
+        let first = self.resolve(frame, terms, targets.of(0))?;
+        Ok(Filtered { noisy: iterate::add(frame, self, terms, first, targets)?, change })
     }
 
     /// To the pixels' keys, if they are in the table, and those behind, where slots are given before samples are added.
@@ -305,7 +319,8 @@ impl Table {
 
     /// A pass over pixels that finds their samples' keys.
     fn reads_points<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, terms: &Terms) -> PassBuilder<'b, 'a> {
-        let pass = reads_vertices(pass, terms).constant(PART, self.options.part as u32).reads("filter_layer", terms.vertex.layer);
+        let pass = reads_vertices(pass, terms).constant(PART, self.options.part as u32).constant(ITERATION, self.iteration);
+        let pass = pass.reads("filter_layer", terms.vertex.layer);
         if self.options.part == Part::Glossy { pass } else { pass.touching(0) }
     }
 
@@ -319,22 +334,26 @@ impl Table {
 
     fn merge(&self, frame: &mut FrameBuilder) -> Result<(), GpuError> {
         let pass = frame.pass(self.options.part.names().merge, "filter/hpsf/merge").elements(self.capacity);
-        let pass = pass.constant(PART, self.options.part as u32).constant(CAPACITY, self.capacity);
+        let pass = pass.constant(PART, self.options.part as u32).constant(CAPACITY, self.capacity).constant(ITERATION, self.iteration);
         let pass = pass.constant(SAMPLE_BITS, sample_bits(self.insertions)).constant(FLOAT_SUMS, self.float_sums.into());
         let pass = pass.updates("keys", self.keys.current).updates("sums", self.sums);
         pass.reads("seeds", self.seeds).updates("cells", self.cells.current).add()
     }
 
-    fn resolve(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<Noisy, GpuError> {
+    fn resolve(&self, frame: &mut FrameBuilder, terms: &Terms, mean: ImageHandle) -> Result<Noisy, GpuError> {
         let names = self.options.part.names();
-        let mean = frame.color_image(names.mean)?;
         let samples = frame.image(names.samples, vk::Format::R32_UINT)?;
-        let touched = u64::from(frame.pixels());
-        let pass = self.reads_samples(frame.pass(names.resolve, "filter/hpsf/resolve"), terms).constant(CAPACITY, self.capacity);
-        let pass = pass.reads("keys", self.keys.current).touching(touched * self.key_bytes);
-        let pass = pass.reads("cells", self.cells.current).touching(touched * CELL);
-        pass.writes("mean", mean).writes("samples", samples).add()?;
+        let pixels = frame.pixels();
+        let pass = self.reads_samples(frame.pass(names.resolve, "filter/hpsf/resolve"), terms);
+        self.reads_cells(pass, pixels).writes("mean", mean).writes("samples", samples).add()?;
         Ok(Noisy { mean, samples })
+    }
+
+    /// A pass that looks this frame's keys up, one for each pixel.
+    fn reads_cells<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, pixels: u32) -> PassBuilder<'b, 'a> {
+        let touched = u64::from(pixels);
+        let pass = pass.constant(CAPACITY, self.capacity).reads("keys", self.keys.current).touching(touched * self.key_bytes);
+        pass.reads("cells", self.cells.current).touching(touched * CELL)
     }
 
     fn statistics(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {

@@ -149,6 +149,7 @@ fn table_options(options: PassOptions, part: Part) -> Options {
         evicts: number("hpsf.eviction") == 1.0,
         exact_keys: number("hpsf.keys") == 1.0 && part != Part::Glossy,
         float_sums: number("hpsf.sums") == 1.0,
+        iterations: number("hpsf.iterations") as u32,
         statistics: !matches!(part, Part::Indirect | Part::Glossy | Part::Behind) && options.wants(&hpsf::STATISTICS),
     }
 }

@@ -20,7 +20,7 @@ fn under_a_constant_sky(base_color: [f32; 4]) -> (Scene, Settings) {
 }
 
 /// Every switch of a filter that changes what it adds up.
-const SWITCHES: [&[(&str, &str)]; 15] = [
+const SWITCHES: [&[(&str, &str)]; 16] = [
     &[],
     &[("hpsf.sums", "float"), ("hpsf.jitter_by", "sampler")],
     &[("hpsf.table", "swapped"), ("hpsf.levels", "3")],
@@ -33,6 +33,7 @@ const SWITCHES: [&[(&str, &str)]; 15] = [
     &[("hpsf.normals", "similar"), ("hpsf.normal_bits", "6"), ("hpsf.few", "1000")],
     &[("hpsf.eviction", "priority"), ("hpsf.cells", "0.01"), ("hpsf.width", "4")],
     &[("hpsf.blend", "on"), ("hpsf.limit", "1"), ("hpsf.few", "1")],
+    &[("hpsf.iterations", "3"), ("hpsf.split", "on"), ("hpsf.table", "swapped"), ("hpsf.adaptive", "1"), ("hpsf.limit", "1")],
     &[("sspsf.window", "3"), ("anhpsf.choice", "importance")],
     &[("hpsf.split", "on"), ("hpsf.smooth", "3"), ("hpsf.smooth_specular", "2")],
     &[("hpsf.smooth", "5"), ("hpsf.smooth_noise", "1000"), ("paths.scramble", "tile"), ("frame.jitter", "on")],

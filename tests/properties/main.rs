@@ -23,6 +23,7 @@ mod filter_hash_key;
 mod filter_hpsf;
 mod filter_hpsf_glossy;
 mod filter_hpsf_history;
+mod filter_hpsf_iterations;
 mod filter_hpsf_order;
 mod filter_hpsf_table;
 mod filter_hpsf_time;

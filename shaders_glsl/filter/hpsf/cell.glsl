@@ -11,6 +11,7 @@
 #define FILTER_HPSF_CELL_GLSL
 
 #include "filter/footprint.glsl"
+#include "filter/hpsf/iteration.glsl"
 #include "lib/frame.glsl"
 #include "lib/hash_key.glsl"
 #include "lib/layer.glsl"
@@ -19,6 +20,8 @@
 
 /// Behind all dimensions that a path takes (paths/path.glsl).
 const uint JITTER_DIMENSION = 320u;
+/// Of a pixel in one filtering: of its sample, and of up to 8 lookups.
+const uint MOST_JITTERS = 9u;
 
 struct FilterPoint {
     vec3 position;
@@ -49,14 +52,14 @@ FilterPoint filter_point(uvec2 pixel, vec4 position, uint normal, uint incident)
     return FilterPoint(position.xyz, unpack_normal(normal), arrives, position.w, arrives * view_cosine, 0u);
 }
 
-/// Numbers in [0, 1)^4 of a pixel's jitter `index` in this frame: for the position, and for the normal.
+/// Numbers in [0, 1)^4 of a pixel's jitter `index` in this frame and filtering: for the position, and for the normal.
 vec4 jitter_numbers(uvec2 pixel, uint index) {
     if (HPSF_JITTER_BY == 0u) {
-        uvec4 bits = pcg4d(uvec4(pixel, frame.seed, frame.first_sample * 16u + index));
+        uvec4 bits = pcg4d(uvec4(pixel, frame.seed + ITERATION * 0x9e3779b9u, frame.first_sample * 16u + index));
         return vec4(unit_float(bits.xy), unit_float(bits.zw));
     }
     Sampler numbers = sampler_begin(pixel, frame.first_sample, frame.seed);
-    numbers.dimension = JITTER_DIMENSION + 2u * index;
+    numbers.dimension = JITTER_DIMENSION + 2u * (MOST_JITTERS * ITERATION + index);
     vec2 first = sample_2d(numbers);
     return vec4(first, sample_2d(numbers));
 }

@@ -89,9 +89,9 @@ void main() {
         if (slot == NO_SLOT) {
             continue;
         }
-        vec3 added = parameters.hpsf_limit > 0.0 ? limited(one.radiance, key, slot) : one.radiance;
+        vec3 added = parameters.hpsf_limit > 0.0 && ITERATION == 0u ? limited(one.radiance, key, slot) : one.radiance;
         bool first = add_sample(slot, clamp(added, vec3(0.0), vec3(parameters.hpsf_largest)), one.dither);
-        if (first && HPSF_TIME != TIME_FRAME && is_unknown(slot)) {
+        if (first && TIME != TIME_FRAME && is_unknown(slot)) {
             seeds.at[slot] = pack_cell(seed_of(key));
         }
     }

@@ -45,11 +45,11 @@ Cell take_sums(uint slot) {
 
 /// Weight of the past.
 float alpha_of(uint old_count, uint new_count) {
-    if (HPSF_TIME == TIME_FRAME || old_count == 0u) {
+    if (TIME == TIME_FRAME || old_count == 0u) {
         return 0.0;
     }
     float known = float(old_count) / (1.0 + parameters.hpsf_recency);
-    return HPSF_TIME == TIME_AVERAGE ? parameters.hpsf_alpha : known / (known + float(new_count));
+    return TIME == TIME_AVERAGE ? parameters.hpsf_alpha : known / (known + float(new_count));
 }
 
 /// The old mean, a step nearer the new one. After millions of samples a step is less than a float's last digit: rounded to nearest, the mean
@@ -85,10 +85,10 @@ void main() {
     if (slot >= CAPACITY || keys.at[KEY_WORDS * slot] == NO_FINGERPRINT) {
         return;
     }
-    Cell old = HPSF_TABLE == TABLE_PERSISTENT ? unpack_cell(cells.at[slot]) : EMPTY_CELL;
+    Cell old = HPSF_TABLE == TABLE_PERSISTENT && TIME != TIME_FRAME ? unpack_cell(cells.at[slot]) : EMPTY_CELL;
     Cell new = take_sums(slot);
     if (new.count == 0u) {
-        bool evicted = HPSF_TIME == TIME_FRAME || old.age >= parameters.hpsf_age;
+        bool evicted = TIME == TIME_FRAME || old.age >= parameters.hpsf_age;
         old.age++;
         store(slot, evicted ? EMPTY_CELL : old);
         if (evicted) {
@@ -98,14 +98,14 @@ void main() {
         }
         return;
     }
-    if (old.count == 0u && HPSF_TIME != TIME_FRAME) {
+    if (old.count == 0u && TIME != TIME_FRAME) {
         old = unpack_cell(seeds.at[slot]);
     }
     uint known = min(old.count, parameters.hpsf_samples);
-    if (HPSF_TIME == TIME_DETECT && known > 0u) {
+    if (TIME == TIME_DETECT && known > 0u) {
         known = min(known, past_samples(significant_change(old, known, new), new.count));
     }
     vec3 mean = towards(old, new, 1.0 - alpha_of(known, new.count));
-    uint count = min((HPSF_TIME == TIME_FRAME ? 0u : known) + new.count, MOST_SAMPLES);
+    uint count = min((TIME == TIME_FRAME ? 0u : known) + new.count, MOST_SAMPLES);
     store(slot, Cell(all_finite(mean) ? mean : new.mean, count, 0u));
 }

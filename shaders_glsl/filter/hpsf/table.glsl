@@ -5,6 +5,7 @@
 #ifndef FILTER_HPSF_TABLE_GLSL
 #define FILTER_HPSF_TABLE_GLSL
 
+#include "filter/hpsf/iteration.glsl"
 #include "lib/hash_key.glsl"
 #include "shared/parameters.glsl"
 
@@ -25,6 +26,8 @@ const uint TIME_AVERAGE = 1u;
 const uint TIME_INTEGRATE = 2u;
 const uint TIME_HYBRID = 3u;
 const uint TIME_DETECT = 4u;
+/// What is filtered again has no history.
+const uint TIME = ITERATION == 0u ? HPSF_TIME : TIME_FRAME;
 const uint TABLE_PERSISTENT = 0u;
 const uint TABLE_SWAPPED = 1u;
 
