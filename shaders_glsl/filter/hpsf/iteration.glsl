@@ -1,4 +1,4 @@
-// Path space filtering of its own result: the iterated weighted averages of Keller et al. 2014 (Meijer, chapter 3, figure 4), in hashed cells.
+// Path space filtering of its own result: the iterated weighted averages of Keller et al. 2014 (Meijer, section 3.4, figure 4), in hashed cells.
 //
 // With hpsf.iterations, the radiance behind the filter vertex that collect, merge and resolve have made of each pixel, a mean of many samples, is
 // the pixel's sample once more, one as good as the other, under another jitter. Box and jitter are convolved with themselves: the kernel is
@@ -18,8 +18,8 @@
 // Twice in cells of 4 pixels is better than once in cells of 8, and takes twice the time; what else that time buys, lookups or smoothing, is better
 // than both. Where little but noise is to be seen (material, one frame, same order, relMSE without the worst 0.1 % of the pixels): 0.340 and 0.43;
 // 0.290 and 0.25; 0.269 and 0.21; 0.315 and 0.36; 0.326 and 0.30; 0.315 and 0.24; there 16 pixels once do as well at once: 0.261 and 0.24.
-// hpsf+ (three seeds) goes from 0.0783 and 0.0066 to 0.0785 and 0.0066 on cornell, 0.261 and 0.22 to 0.243 and 0.21 on material; after 16
-// frames from 0.0379 and 0.00080 to 0.0400 and 0.00089, 0.125 and 0.040 to 0.121 and 0.041: the default is once.
+// hpsf+ (three seeds) goes from 0.0783 and 0.0066 to 0.0785 and 0.0066 on cornell, 0.260 and 0.21 to 0.242 and 0.20 on material; after 16
+// frames from 0.0379 and 0.00080 to 0.0400 and 0.00089, 0.124 and 0.038 to 0.120 and 0.039: the default is once.
 #ifndef FILTER_HPSF_ITERATION_GLSL
 #define FILTER_HPSF_ITERATION_GLSL
 
