@@ -20,9 +20,11 @@ pub(super) const TECHNIQUE: Technique = Technique {
         ("hpsf.width", "3"),
         // Fine cells are many: with room for them all, which pixel fails to get one is left to chance no more.
         ("hpsf.cells", "2"),
-        ("hpsf.jitter", "0.4"),
+        // What jitter would hide of fine cells' borders, smoothing does with less noise.
+        ("hpsf.jitter", "0.1"),
         ("hpsf.normal_bits", "6"),
         ("hpsf.second", "cells"),
+        ("nhpsf.vertices", "3"),
         ("nhpsf.wider", "1"),
         ("hpsf.time", "hybrid"),
         // Cells of second vertices, and the light that comes from them, get better with every frame.

@@ -18,8 +18,8 @@
 #include "lib/sampler.glsl"
 #include "paths/primary.glsl"
 
-/// Behind all dimensions that a path takes (paths/path.glsl).
-const uint JITTER_DIMENSION = 320u;
+/// Behind all dimensions that a path of 66 vertices takes (paths/path.glsl).
+const uint JITTER_DIMENSION = 2048u;
 /// Of a pixel in one filtering: of its sample, and of up to 8 lookups.
 const uint MOST_JITTERS = 9u;
 
