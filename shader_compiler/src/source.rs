@@ -8,8 +8,10 @@ use std::path::{Path, PathBuf};
 /// A kernel that traces rays is compiled once per acceleration structure.
 const TRACE_INCLUDE: &str = "accel/trace.glsl";
 const STRUCTURES: &str = "accel/structures";
-/// A kernel that declares images in the frame's precision does so by this macro, and is compiled once per precision.
+/// A kernel that declares images, or buffers of a filter's cells, in the frame's precision does so by these macros, and is compiled once per
+/// precision.
 const COLOR_FORMAT: &str = "COLOR_FORMAT";
+const CELL_WORDS: &str = "CELL_WORDS";
 
 /// Of the frame's images and histories.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -35,6 +37,26 @@ impl Precision {
             Precision::Fp16 => "rgba16f",
         }
     }
+
+    /// GLSL's type of a cell's words.
+    fn cell_words(self) -> &'static str {
+        match self {
+            Precision::Fp32 => "uvec4",
+            Precision::Fp16 => "uvec2",
+        }
+    }
+
+    /// Bytes that filters keep per cell.
+    pub fn cell_bytes(self) -> u64 {
+        match self {
+            Precision::Fp32 => 16,
+            Precision::Fp16 => 8,
+        }
+    }
+
+    fn defines(self) -> [(String, String); 2] {
+        [(COLOR_FORMAT, self.color_format()), (CELL_WORDS, self.cell_words())].map(|(name, value)| (name.to_owned(), value.to_owned()))
+    }
 }
 
 /// One compilation of one kernel.
@@ -46,7 +68,7 @@ pub struct Variant {
     pub stem: String,
     /// File stem of the acceleration structure, for kernels that trace rays.
     pub structure: Option<String>,
-    /// For kernels with images in the frame's precision.
+    /// For kernels with images or cells in the frame's precision.
     pub precision: Option<Precision>,
 }
 
@@ -59,8 +81,7 @@ impl Variant {
 
     pub fn defines(&self) -> Vec<(String, String)> {
         let structure = self.structure.as_deref().map(structure_defines).unwrap_or_default();
-        let format = self.precision.map(|precision| (COLOR_FORMAT.to_owned(), precision.color_format().to_owned()));
-        structure.into_iter().chain(format).collect()
+        structure.into_iter().chain(self.precision.into_iter().flat_map(Precision::defines)).collect()
     }
 }
 
@@ -85,11 +106,11 @@ pub fn find_variants(root: &Path) -> Result<Vec<Variant>, CompileError> {
         let includes = transitive_includes(root, &path)?;
         let traces = includes.contains(Path::new(TRACE_INCLUDE));
         let structures = if traces { structures.iter().cloned().map(Some).collect() } else { vec![None] };
-        let mut stores_colour = has_colour_image(&read(&path)?);
+        let mut differs = depends_on_precision(&read(&path)?);
         for include in includes {
-            stores_colour |= has_colour_image(&read(&root.join(include))?);
+            differs |= depends_on_precision(&read(&root.join(include))?);
         }
-        let precisions = if stores_colour { Precision::ALL.map(Some).to_vec() } else { vec![None] };
+        let precisions = if differs { Precision::ALL.map(Some).to_vec() } else { vec![None] };
         for structure in structures {
             let variant = |&precision| Variant { file: file.clone(), stem: stem.clone(), structure: structure.clone(), precision };
             variants.extend(precisions.iter().map(variant));
@@ -99,8 +120,9 @@ pub fn find_variants(root: &Path) -> Result<Vec<Variant>, CompileError> {
     Ok(variants)
 }
 
-fn has_colour_image(source: &str) -> bool {
-    source.lines().any(|line| line.starts_with("layout(") && line.contains(COLOR_FORMAT))
+fn depends_on_precision(source: &str) -> bool {
+    let declares = |line: &str| [COLOR_FORMAT, CELL_WORDS].iter().any(|name| line.contains(name));
+    source.lines().any(|line| line.starts_with("layout(") && declares(line))
 }
 
 /// Changes when the kernel, or anything that it includes, changes.

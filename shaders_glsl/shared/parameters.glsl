@@ -48,7 +48,7 @@ layout(constant_id = 120) const uint ALBEDO = 0;
 /// Sum over frames: two words, the second for what rounding has lost, or one. Plain moves 32 bytes per pixel less (16 at fp16), and drifts over many frames.
 layout(constant_id = 121) const uint SUM = 0;
 //@ frame.precision fp32 fp32|fp16
-/// Images and histories, other than positions, motion and identities. fp16 halves their bytes; rounds to 11 bits, and clamps at 65504.
+/// Images and histories, those of hpsf's cells too, other than positions, motion and identities. fp16 halves their bytes; rounds to 11 bits, and clamps at 65504. Cells are rounded at random, so that means of thousands of frames neither stall nor drift.
 layout(constant_id = 122) const uint PRECISION = 0;
 //@ frame.jitter off off|on
 /// Primary rays of techniques for real time go through the pixel's centre, or through a point of it that changes with every frame, the same in all pixels. On is antialiasing where frames add up, and trembling edges where each stands alone. No cost.

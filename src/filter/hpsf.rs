@@ -6,10 +6,10 @@
 //!
 //! Three passes, and before them up to two that give slots in a fixed order (24 bytes of vertex and 4 of key read per pixel and level).
 //! collect: each pixel's sample into a cell, 56 bytes read per pixel, and per level 4 bytes of key (exact: 8) read and 28 (float: 16) of
-//! sums updated. merge: over slots, 4 bytes read each, and for those taken 32 (16) of sums, 16 of seed and 16 of
-//! mean. resolve: 56 bytes read and 20 written per pixel, 20 read per lookup and level. Where one of [`STATISTICS`] is asked for, a
-//! fourth pass puts out what became of the insertions, and a fifth before it whose keys the slots hold. hpsf/changes.rs lets cells
-//! forget where light has changed, and hpsf/iterate.rs filters again what has been filtered.
+//! sums updated. merge: over slots, 4 bytes read each, and for those taken 32 (16) of sums, 16 (at fp16: 8) of seed and as much of
+//! cell. resolve: 56 bytes read and 20 written per pixel, 4 of key and 16 (8) of cell read per lookup and level. Where one of
+//! [`STATISTICS`] is asked for, a fourth pass puts out what became of the insertions, and a fifth before it whose keys the slots hold.
+//! hpsf/changes.rs lets cells forget where light has changed, and hpsf/iterate.rs filters again what has been filtered.
 
 mod changes;
 mod iterate;
@@ -36,7 +36,6 @@ pub const STATISTICS: [&str; 5] = ["hpsf_probed", "hpsf_failed", "hpsf_collided"
 
 /// Bytes per slot.
 const WORD: u64 = 4;
-const CELL: u64 = 16;
 
 /// A float plus 1 is the same float from here on: all of a frame's samples may meet in one cell.
 const MOST_COUNTED_IN_FLOATS: u64 = 1 << 24;
@@ -172,6 +171,8 @@ pub struct Table {
     /// Of a slot.
     key_bytes: u64,
     cells: History<BufferHandle>,
+    /// Of a slot: filter/hpsf/stored_cell.glsl.
+    cell_bytes: u64,
     seeds: BufferHandle,
     sums: BufferHandle,
     float_sums: bool,
@@ -200,12 +201,14 @@ impl Table {
             tracing::warn!("hpsf.keys=exact is for hpsf.insertion=first: fingerprints are used");
         }
         let key_bytes = if exact_keys { 2 * WORD } else { WORD };
+        let cell_bytes = frame.precision().cell_bytes();
         Ok(Self {
             capacity: capacity as u32,
             keys: kept(frame, "hpsf keys", capacity * key_bytes, options.swapped)?,
             key_bytes,
-            cells: kept(frame, "hpsf cells", capacity * CELL, options.swapped)?,
-            seeds: frame.buffer("hpsf seeds", capacity * CELL)?,
+            cells: kept(frame, "hpsf cells", capacity * cell_bytes, options.swapped)?,
+            cell_bytes,
+            seeds: frame.buffer("hpsf seeds", capacity * cell_bytes)?,
             sums: frame.kept_buffer("hpsf sums", capacity * sums)?,
             float_sums,
             options,
@@ -305,7 +308,7 @@ impl Table {
     /// A pass that looks keys up, as `known_keys` and `known_cells`, in what earlier frames have left.
     pub fn looks_up<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, keys: u64) -> PassBuilder<'b, 'a> {
         let pass = pass.constant(CAPACITY, self.capacity).reads("known_keys", self.keys.previous);
-        pass.touching(keys * self.key_bytes).reads("known_cells", self.cells.previous).touching(keys * CELL)
+        pass.touching(keys * self.key_bytes).reads("known_cells", self.cells.previous).touching(keys * self.cell_bytes)
     }
 
     /// A pass that adds samples to cells of each level.
@@ -353,7 +356,7 @@ impl Table {
     fn reads_cells<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, pixels: u32) -> PassBuilder<'b, 'a> {
         let touched = u64::from(pixels);
         let pass = pass.constant(CAPACITY, self.capacity).reads("keys", self.keys.current).touching(touched * self.key_bytes);
-        pass.reads("cells", self.cells.current).touching(touched * CELL)
+        pass.reads("cells", self.cells.current).touching(touched * self.cell_bytes)
     }
 
     fn statistics(&self, frame: &mut FrameBuilder, terms: &Terms) -> Result<(), GpuError> {

@@ -2,8 +2,8 @@
 //! [`super::hpsf`], whose table they share.
 //!
 //! transport: takes the lists of vertices and the last frame's table; adds what the vertices send to the one before them to the lists'
-//! radiance, and to the terms `diffuse_indirect` and `specular_indirect`. Reads 40 bytes a pixel and 48 a vertex, 20 for each level
-//! of a vertex, and writes 32 and 16. collect: takes the lists; adds each vertex's radiance to its cell, as hpsf's collect does.
+//! radiance, and to the terms `diffuse_indirect` and `specular_indirect`. Reads 40 bytes a pixel and 48 a vertex, 20 (at fp16: 12) for
+//! each level of a vertex, and writes 32 and 16. collect: takes the lists; adds each vertex's radiance to its cell, as hpsf's collect does.
 
 use super::hpsf::Table;
 use crate::frame::{FrameBuilder, PassBuilder};

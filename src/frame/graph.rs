@@ -119,6 +119,11 @@ impl<'a> FrameBuilder<'a> {
         self.image_history(name, self.color_format())
     }
 
+    /// Of colour images and of filters' cells.
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+
     fn color_format(&self) -> vk::Format {
         match self.precision {
             Precision::Fp32 => vk::Format::R32G32B32A32_SFLOAT,

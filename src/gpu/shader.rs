@@ -24,7 +24,7 @@ pub fn traces_rays(stem: &str) -> bool {
 }
 
 /// A kernel's SPIR-V. `structure` is the stem of an acceleration structure's file, and matters to kernels that trace rays only;
-/// `precision` matters to those with images in the frame's precision.
+/// `precision` matters to those with images or cells in the frame's precision.
 ///
 /// # Errors
 /// No such kernel, or one on disk that does not compile.

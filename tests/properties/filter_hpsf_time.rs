@@ -107,7 +107,8 @@ fn the_hybrid_has_nine_tenths_of_a_step_of_the_light_within_four_frames() {
     let gpu = common::gpu();
     let of_time = |time| response(&gpu, &[("hpsf.time", time)], &floor(4.0).materials[0], "diffuse");
     let [hybrid, detect, average, integrate] = ["hybrid", "detect", "average", "integrate"].map(of_time);
-    for (time, frames) in [("hybrid", hybrid), ("detect", detect)] {
+    let narrow = response(&gpu, &[("hpsf.time", "hybrid"), ("frame.precision", "fp16")], &floor(4.0).materials[0], "diffuse");
+    for (time, frames) in [("hybrid", hybrid), ("detect", detect), ("hybrid in half precision", narrow)] {
         assert!(frames[..3].iter().any(|&part| part > 0.9), "{time}: {frames:?}");
     }
     assert!(average.iter().chain(&integrate).all(|&part| part < 0.9), "{average:?} {integrate:?}");

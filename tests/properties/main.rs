@@ -25,6 +25,7 @@ mod filter_hpsf_glossy;
 mod filter_hpsf_history;
 mod filter_hpsf_iterations;
 mod filter_hpsf_order;
+mod filter_hpsf_precision;
 mod filter_hpsf_table;
 mod filter_hpsf_time;
 mod filter_nhpsf;

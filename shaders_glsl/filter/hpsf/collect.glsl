@@ -7,6 +7,7 @@
 // one counts with a damped weight, a quarter of its samples by area times hpsf.seed_weight.
 #include "filter/hpsf/cell.glsl"
 #include "filter/hpsf/find.glsl"
+#include "filter/hpsf/stored_cell.glsl"
 #include "lib/colour.glsl"
 
 /// What goes into cells.
@@ -21,9 +22,9 @@ struct CellSample {
 bool find_sample(out CellSample one);
 
 layout(set = 1, binding = 5, scalar) buffer Keys { uint at[]; } keys;
-layout(set = 1, binding = 6, scalar) writeonly buffer Seeds { uvec4 at[]; } seeds;
+layout(set = 1, binding = 6, scalar) writeonly buffer Seeds { CELL_WORDS at[]; } seeds;
 /// What earlier frames know: the last frame's table, or this one where it persists.
-layout(set = 1, binding = 7, scalar) readonly buffer KnownCells { uvec4 at[]; } known_cells;
+layout(set = 1, binding = 7, scalar) readonly buffer KnownCells { CELL_WORDS at[]; } known_cells;
 layout(set = 1, binding = 8, scalar) readonly buffer KnownKeys { uint at[]; } known_keys;
 
 #include "filter/hpsf/claim.glsl"

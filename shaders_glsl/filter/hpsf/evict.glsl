@@ -1,8 +1,9 @@
 // hpsf.eviction = priority: keys that have found no slot take those of cells that nobody has touched in this frame, of the lowest priority
 // first: Binder, section 3.4.3, and filter/hpsf/ordered.glsl. Only where the table is full does this pass do more than look.
 #include "filter/hpsf/ordered_points.glsl"
+#include "filter/hpsf/stored_cell.glsl"
 
-layout(set = 1, binding = 4, scalar) writeonly buffer Cells { uvec4 at[]; } cells;
+layout(set = 1, binding = 4, scalar) writeonly buffer Cells { CELL_WORDS at[]; } cells;
 
 void main() {
     CellPoint at;
@@ -14,7 +15,7 @@ void main() {
         if (find_slot(key) == NO_SLOT) {
             uint evicted = evict_for(home_slot(key), words_of(key).x);
             if (evicted != NO_SLOT) {
-                cells.at[evicted] = uvec4(0u);
+                cells.at[evicted] = pack_cell(EMPTY_CELL);
             }
         }
     }

@@ -10,6 +10,7 @@
 #include "filter/hpsf/changes.glsl"
 #include "filter/hpsf/find.glsl"
 #include "filter/hpsf/forgetting.glsl"
+#include "filter/hpsf/stored_cell.glsl"
 
 layout(local_size_x = 8, local_size_y = 4) in;
 
@@ -21,8 +22,8 @@ layout(set = 1, binding = 2, r32ui) readonly uniform uimage2D filter_incident;
 layout(set = 1, binding = 3, scalar) readonly buffer Changes { uint at[]; } changes;
 layout(set = 1, binding = 4, scalar) readonly buffer Keys { uint at[]; } keys;
 layout(set = 1, binding = 5, scalar) readonly buffer Sums { uint at[]; } sums;
-layout(set = 1, binding = 6, scalar) buffer Cells { uint at[]; } cells;
-layout(set = 1, binding = 7, scalar) buffer Seeds { uint at[]; } seeds;
+layout(set = 1, binding = 6, scalar) buffer Cells { CELL_WORDS at[]; } cells;
+layout(set = 1, binding = 7, scalar) buffer Seeds { CELL_WORDS at[]; } seeds;
 /// Relative change of the light in the pixel's cells, 0..1; 1 where something has come into view, or other lobes have changed.
 layout(set = 1, binding = 8, r32f) writeonly uniform image2D change;
 layout(set = 1, binding = 9, r32ui) readonly uniform uimage2D filter_layer;
@@ -86,12 +87,12 @@ void forget(CellKey key, float relative_change, bool forgets_unseen) {
     if (slot == NO_SLOT) {
         return;
     }
-    uint known = cells.at[4u * slot + 3u];
-    bool unseen = known > MOST_SAMPLES;
+    uint known = cells.at[slot][LAST_WORD];
+    bool unseen = unpack_age(known) > 0u;
     uint limit = forgets_unseen && unseen ? 0u : past_samples(relative_change, max(new_samples(slot), 1u));
-    // The age above the count is the same for all.
-    atomicMin(cells.at[4u * slot + 3u], known & ~MOST_SAMPLES | limit);
-    atomicMin(seeds.at[4u * slot + 3u], limit);
+    // All but the count is the same for all.
+    atomicMin(cells.at[slot][LAST_WORD], with_count(known, limit));
+    atomicMin(seeds.at[slot][LAST_WORD], with_count(seeds.at[slot][LAST_WORD], limit));
 }
 
 /// The cells at one jittered place, of all levels; the greatest change.

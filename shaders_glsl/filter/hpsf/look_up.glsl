@@ -8,6 +8,7 @@
 
 #include "filter/hpsf/cell.glsl"
 #include "filter/hpsf/find.glsl"
+#include "filter/hpsf/stored_cell.glsl"
 
 uint key_word(uint at) {
     return keys.at[at];

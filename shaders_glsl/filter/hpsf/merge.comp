@@ -11,6 +11,7 @@
 #include "filter/hpsf/fixed_point.glsl"
 #include "filter/hpsf/forgetting.glsl"
 #include "filter/hpsf/ordered.glsl"
+#include "filter/hpsf/stored_cell.glsl"
 #include "lib/colour.glsl"
 #include "lib/elements.glsl"
 #include "lib/rng.glsl"
@@ -22,8 +23,8 @@ layout(constant_id = 223) const bool FLOAT_SUMS = false;
 
 layout(set = 1, binding = 0, scalar) buffer Keys { uint at[]; } keys;
 layout(set = 1, binding = 1, scalar) buffer Sums { uint at[]; } sums;
-layout(set = 1, binding = 2, scalar) readonly buffer Seeds { uvec4 at[]; } seeds;
-layout(set = 1, binding = 3, scalar) buffer Cells { uvec4 at[]; } cells;
+layout(set = 1, binding = 2, scalar) readonly buffer Seeds { CELL_WORDS at[]; } seeds;
+layout(set = 1, binding = 3, scalar) buffer Cells { CELL_WORDS at[]; } cells;
 
 /// This frame's samples of a slot; its sums are zero for the next one.
 Cell take_sums(uint slot) {

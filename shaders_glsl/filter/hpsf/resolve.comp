@@ -12,7 +12,7 @@ layout(set = 1, binding = 3, r32ui) readonly uniform uimage2D filter_normal;
 layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D filter_incident;
 layout(set = 1, binding = 9, r32ui) readonly uniform uimage2D filter_layer;
 layout(set = 1, binding = 5, scalar) readonly buffer Keys { uint at[]; } keys;
-layout(set = 1, binding = 6, scalar) readonly buffer Cells { uvec4 at[]; } cells;
+layout(set = 1, binding = 6, scalar) readonly buffer Cells { CELL_WORDS at[]; } cells;
 /// w: variance, the mean of the channels'; below 0 where nothing is known, not even by a sample of the pixel's own.
 layout(set = 1, binding = 7, COLOR_FORMAT) writeonly uniform image2D mean;
 /// Samples that the pixel's radiance is the mean of; 0 where it is its own alone, or there is no filter vertex.

@@ -4,7 +4,7 @@
 
 layout(set = 1, binding = 0, COLOR_FORMAT) readonly uniform image2D filtered;
 layout(set = 1, binding = 5, scalar) readonly buffer Keys { uint at[]; } keys;
-layout(set = 1, binding = 6, scalar) readonly buffer Cells { uvec4 at[]; } cells;
+layout(set = 1, binding = 6, scalar) readonly buffer Cells { CELL_WORDS at[]; } cells;
 /// w: as it was, more than what is left, since means that share samples do not tell by how much their mean is better.
 layout(set = 1, binding = 7, COLOR_FORMAT) writeonly uniform image2D mean;
 

@@ -7,7 +7,7 @@
 
 #include "filter/hpsf/iteration.glsl"
 #include "lib/hash_key.glsl"
-#include "shared/parameters.glsl"
+#include "shared/bindings.glsl"
 
 layout(constant_id = 221) const uint CAPACITY = 1;
 /// Which part of the light behind the filter vertex the table is about (hpsf.split, hpsf.glossy).
@@ -48,24 +48,16 @@ const uint DISTANCE_BITS = 6u;
 const uint NO_SLOT = ~0u;
 const uint MOST_SAMPLES = 0xffffffu;
 
-/// What a cell knows: 16 bytes.
+/// What a cell knows; filter/hpsf/stored_cell.glsl has its bits.
 struct Cell {
     vec3 mean;
     /// Samples that the mean is over, 0..MOST_SAMPLES.
     uint count;
-    /// Frames since the last one.
+    /// Frames since the last one, 0..255.
     uint age;
 };
 
 const Cell EMPTY_CELL = Cell(vec3(0.0), 0u, 0u);
-
-Cell unpack_cell(uvec4 words) {
-    return Cell(uintBitsToFloat(words.xyz), words.w & MOST_SAMPLES, words.w >> 24);
-}
-
-uvec4 pack_cell(Cell cell) {
-    return uvec4(floatBitsToUint(cell.mean), cell.count | cell.age << 24);
-}
 
 /// What stands for a key in its home slot: the first KEY_WORDS words, under KEY_MASK.
 uvec2 words_of(CellKey key) {

@@ -4,9 +4,10 @@
 
 #include "filter/nhpsf/vertex.glsl"
 #include "filter/hpsf/find.glsl"
+#include "filter/hpsf/stored_cell.glsl"
 
 layout(set = 1, binding = 20, scalar) readonly buffer KnownKeys { uint at[]; } known_keys;
-layout(set = 1, binding = 21, scalar) readonly buffer KnownCells { uvec4 at[]; } known_cells;
+layout(set = 1, binding = 21, scalar) readonly buffer KnownCells { CELL_WORDS at[]; } known_cells;
 
 uint key_word(uint at) {
     return known_keys.at[at];

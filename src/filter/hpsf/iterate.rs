@@ -7,7 +7,7 @@
 //! merge: as there, less the seed. resolve: 40 bytes read and 16 written per pixel, 20 read per lookup and level. Before them keys are
 //! cleared, and given slots where the table orders them.
 
-use super::{CELL, Noisy, Options, Table};
+use super::{Noisy, Options, Table};
 use crate::frame::{BufferHandle, FrameBuilder, History, ImageHandle};
 use crate::gpu::GpuError;
 use crate::paths::terms::Terms;
@@ -49,7 +49,7 @@ pub(super) fn add(frame: &mut FrameBuilder, table: &Table, terms: &Terms, first:
 /// A table without history for the same sums.
 fn of_one_frame(frame: &mut FrameBuilder, table: &Table) -> Result<Table, GpuError> {
     let mut own = |name, bytes| frame.buffer(name, u64::from(table.capacity) * bytes).map(in_both_places);
-    let (keys, cells) = (own("hpsf keys again", table.key_bytes)?, own("hpsf cells again", CELL)?);
+    let (keys, cells) = (own("hpsf keys again", table.key_bytes)?, own("hpsf cells again", table.cell_bytes)?);
     // All keys are of this frame: there is nothing to evict, but slots are given in an order where evicting asks for one.
     let options = Options { swapped: true, ordered: table.options.ordered || table.options.evicts, evicts: false, ..table.options };
     Ok(Table { keys, cells, options, ..*table })
