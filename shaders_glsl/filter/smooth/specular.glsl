@@ -3,9 +3,9 @@
 //
 // No cell averages these terms, only the picture's history does (display/temporal.comp), whose frames come after all smoothing. What noise a
 // pixel has in the end is that of their mean, so one frame counts as so much less noisy, and is smoothed the less: a first frame can take
-// passes whose blur a sixteenth would suffer from. Measured (hpsf+ with hpsf.jitter=0.4, FLIP of the first and the 16th frame): Sponza at 256x144 with two passes
-// 0.154 and 0.079, with three 0.147 and 0.086, with three that know of history 0.147 and 0.080; the hall at 128x72 0.248 and 0.157, with
-// three 0.251 and 0.157.
+// passes whose blur a sixteenth would suffer from. Measured (hpsf+ with hpsf.jitter=0.4, FLIP of the first and the 16th frame): Sponza at
+// 256x144 with two passes 0.154 and 0.079, with three 0.147 and 0.086, with three that know of history 0.147 and 0.080; the hall at 128x72
+// 0.248 and 0.157, with three 0.251 and 0.157.
 #include "lib/colour.glsl"
 #include "lib/storage.glsl"
 #include "shared/bindings.glsl"

@@ -12,8 +12,8 @@
 // brightness of their middles. So a plane is fitted to the taps, and read where the pixel is (local linear regression: Cleveland 1979;
 // Moon, Carr and Yoon 2014 for pictures). Between taps on all sides that is their mean. What the slope adds counts as far as it is more than
 // its own standard error (James and Stein's estimate, its positive part), or the noise of few samples would be extrapolated. Measured (hpsf+ on
-// cornell, 256x144, four seeds, hpsf.jitter=0.4 nhpsf.vertices=2): FLIP of the first frame 0.0508, of the 16th 0.0231; with means 0.0534 and 0.0260, in 0.92 of a frame's time; with
-// planes and luminances 0.0510 and 0.0235.
+// cornell, 256x144, four seeds, hpsf.jitter=0.4 nhpsf.vertices=2): FLIP of the first frame 0.0508, of the 16th 0.0231; with means 0.0534 and
+// 0.0260, in 0.92 of a frame's time; with planes and luminances 0.0510 and 0.0235.
 //
 // Two pixels are as similar one way as the other: the larger of their variances counts. By the centre's alone, as in the paper, a bright
 // sample takes in its dark surroundings and they do not take it in, and 5 % of Sponza's light is lost in one frame.
