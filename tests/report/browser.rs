@@ -83,3 +83,26 @@ fn the_report_draws_in_light_and_dark() {
     });
     assert!(means[0] > 200.0 && means[1] < 80.0, "mean of the page in light and dark: {means:?} of 255");
 }
+
+/// Sheets of A4 without margins are this wide in CSS pixels; browsers scale what is wider down to 0.6 or so, but no further.
+const SHEET: u32 = 794;
+
+#[test]
+fn no_table_is_wider_than_a_printed_sheet() {
+    let folder = make_report("report-printed").join("report");
+    let style = std::fs::read_to_string(folder.join("style.css")).unwrap();
+    assert!(style.contains("@media print"));
+    std::fs::write(folder.join("printed.css"), style.replace("@media print", "@media all")).unwrap();
+    let index = std::fs::read_to_string(folder.join("index.html")).unwrap();
+    let measure = r#"<script>
+        const width = ({ id, scrollWidth }) => [id, scrollWidth <= innerWidth ? null : `${scrollWidth} pixels`];
+        const found = [...document.querySelectorAll(".scroll, figure")].map(width);
+        document.body.append(Object.assign(document.createElement("pre"), { id: "findings", textContent: JSON.stringify(found) }));
+    </script></body>"#;
+    let printed = folder.join("printed.html");
+    std::fs::write(&printed, index.replace("style.css", "printed.css").replace("</body>", measure)).unwrap();
+    let findings = findings(&open(&printed, &[&format!("--window-size={SHEET},1123")]).dom);
+    let wide: Vec<_> = findings.iter().filter(|(_, instead)| instead.is_some()).collect();
+    assert!(wide.is_empty(), "{wide:?}");
+    assert!(findings.iter().any(|(id, _)| id == "point-table"), "{findings:?}");
+}
