@@ -58,6 +58,9 @@ pub struct SceneRow {
     pub name: String,
     /// A built-in scene, or a file relative to the suite's.
     pub source: String,
+    /// Left out, with a warning, where its file is missing.
+    #[serde(default)]
+    pub optional: bool,
     #[serde(default = "nothing")]
     pub moves: Moves,
     /// Frames of the sequence of a scene that moves; the last one is measured.
@@ -125,6 +128,8 @@ pub struct Quick {
     /// Sequences are at most so long.
     pub most_frames: Option<u32>,
     pub most_samples: Option<u64>,
+    /// Switches take at most so many frames: what more of them accumulate would want a better reference.
+    pub most_switch_frames: Option<u32>,
     /// Scenes of the switches.
     pub switch_scenes: Option<Vec<String>>,
 }
@@ -180,7 +185,17 @@ impl Suite {
             let known: Vec<&str> = suite.scenes.iter().map(|scene| scene.name.as_str()).collect();
             return Err(malformed(format!("there is no scene '{name}'; there are {}", known.join(", "))));
         }
-        Ok(Self { folder: folder.to_owned(), ..suite })
+        Ok(Self { folder: folder.to_owned(), ..suite }.without_missing_scenes())
+    }
+
+    fn without_missing_scenes(mut self) -> Self {
+        let (there, missing) =
+            std::mem::take(&mut self.scenes).into_iter().partition(|scene| !scene.optional || self.folder.join(&scene.source).exists());
+        self.scenes = there;
+        for SceneRow { name, source, .. } in &missing as &Vec<SceneRow> {
+            tracing::warn!("'{name}' is left out, since there is no '{}'", self.folder.join(source).display());
+        }
+        self
     }
 
     /// Scenes that rows are limited to: a name that no scene has would silently measure nothing.
@@ -191,7 +206,8 @@ impl Suite {
 
     /// The same suite, cut down to what takes minutes.
     pub fn quick(mut self) -> Self {
-        let Quick { sizes, seeds, scenes, most_spp, most_frames, most_samples, switch_scenes } = std::mem::take(&mut self.quick);
+        let Quick { sizes, seeds, scenes, most_spp, most_frames, most_samples, most_switch_frames, switch_scenes } =
+            std::mem::take(&mut self.quick);
         self.sizes = sizes.unwrap_or(self.sizes);
         self.seeds = seeds.unwrap_or(self.seeds);
         self.reference.most_samples = most_samples.unwrap_or(self.reference.most_samples);
@@ -203,6 +219,9 @@ impl Suite {
         for technique in &mut self.techniques {
             technique.spp.retain(|&spp| spp <= most_spp);
             technique.frames.retain(|&frames| frames <= most_frames);
+        }
+        for switch in &mut self.switches {
+            switch.frames = switch.frames.min(most_switch_frames.unwrap_or(u32::MAX));
         }
         if let Some(names) = switch_scenes {
             self.switches.iter_mut().for_each(|switch| switch.scenes = Some(names.clone()));
@@ -236,10 +255,23 @@ mod tests {
     }
 
     #[test]
+    fn an_optional_scene_is_left_out_where_its_file_is_missing() {
+        let row = "[[scenes]]\nname = \"kitchen\"\noptional = true\nsource = \"SOURCE\"\n\n[[techniques]]\nscenes = [\"kitchen\"]";
+        let suite = |source: &str| {
+            let text = STANDARD.replacen("[[techniques]]", &row.replace("SOURCE", source), 1);
+            Suite::parse("test", &text, Path::new(env!("CARGO_MANIFEST_DIR"))).unwrap()
+        };
+        let has_kitchen = |suite: &Suite| suite.scenes.iter().any(|scene| scene.name == "kitchen");
+        assert!(!has_kitchen(&suite("missing.glb")) && has_kitchen(&suite("Cargo.toml")));
+    }
+
+    #[test]
     fn a_quick_suite_is_smaller_in_every_respect() {
         let (whole, quick) = (Suite::load(None).unwrap(), Suite::load(None).unwrap().quick());
         assert!(quick.scenes.len() < whole.scenes.len() && quick.seeds < whole.seeds);
         let samples = |suite: &Suite| suite.techniques.iter().map(|row| row.spp.len()).sum::<usize>();
         assert!(samples(&quick) < samples(&whole));
+        let frames = |suite: &Suite| suite.switches.iter().map(|row| row.frames).max();
+        assert!(frames(&quick) < frames(&whole));
     }
 }
