@@ -21,6 +21,7 @@ use crate::gpu::{GpuError, vk};
 use crate::paths::Retraced;
 use crate::paths::terms::Terms;
 use crate::paths::vertices::PathVertices;
+pub use changes::Changes;
 use iterate::Targets;
 
 /// Specialization constants.
@@ -93,12 +94,12 @@ impl Part {
                 collect: "hpsf collect indirect",
                 merge: "hpsf merge indirect",
                 resolve: "hpsf resolve indirect",
-                changes: "hpsf changes indirect",
                 forget: "hpsf forget indirect",
                 change: "hpsf_change_indirect",
                 mean: "indirect",
                 mean_before: "indirect_before",
                 samples: "hpsf_samples_indirect",
+                ..Self::Both.names()
             },
             Self::Glossy => Names {
                 clear: "hpsf clear glossy",
@@ -152,7 +153,7 @@ pub struct Paths {
     pub behind: Option<PathVertices>,
     /// And those of paths that are continued over frames.
     pub chains: Option<PathVertices>,
-    /// Paths of the last frame that were traced again: cells forget where they tell of a change.
+    /// Paths of the last frame that were traced again, which tell of changes.
     pub retraced: Option<Retraced>,
 }
 
@@ -232,7 +233,12 @@ impl Table {
         }
     }
 
-    pub fn filter(&self, frame: &mut FrameBuilder, paths: &Paths) -> Result<Filtered, GpuError> {
+    /// What the paths that were traced again say of the light that the table is about: the same for tables of direct and of indirect light.
+    pub fn changes(&self, frame: &mut FrameBuilder, paths: &Paths) -> Result<Option<Changes>, GpuError> {
+        paths.retraced.map(|retraced| Changes::add(frame, retraced, self.options.part, self.options.levels)).transpose()
+    }
+
+    pub fn filter(&self, frame: &mut FrameBuilder, paths: &Paths, changes: Option<Changes>) -> Result<Filtered, GpuError> {
         let terms = &paths.terms;
         if let Some(vertices) = &paths.behind {
             nhpsf::transport(frame, self, terms, vertices)?;
@@ -244,8 +250,7 @@ impl Table {
         for vertices in behind() {
             nhpsf::collect(frame, self, vertices)?;
         }
-        let add_changes = |retraced| changes::add(frame, self, terms, retraced, self.options.levels);
-        let change = paths.retraced.map(add_changes).transpose()?;
+        let change = changes.map(|changes| changes.forget(frame, self, terms)).transpose()?;
         self.merge(frame)?;
         if self.options.statistics {
             self.statistics(frame, terms)?;

@@ -100,8 +100,9 @@ fn filter_diffuse(
     paths: &Paths,
     options: PassOptions,
 ) -> Result<([ImageHandle; 2], Option<ImageHandle>), GpuError> {
+    let changes = table.changes(frame, paths)?;
     let mut smoothed = |table: &Table, layer: &Layer, key| {
-        let filtered = table.filter(frame, paths)?;
+        let filtered = table.filter(frame, paths, changes)?;
         let smoothed = smooth::add(frame, &paths.terms.vertex, filtered.noisy, layer, smoothing(options, key))?;
         Ok((smoothed, filtered.change))
     };
@@ -125,7 +126,10 @@ fn filter_specular(
 ) -> Result<[ImageHandle; 2], GpuError> {
     let (terms, passes) = (&paths.terms, smoothing(options, "hpsf.smooth_specular"));
     let noisy = match glossy {
-        Some(table) => table.filter(frame, &Paths { behind: None, chains: None, ..*paths })?.noisy,
+        Some(table) => {
+            let changes = table.changes(frame, paths)?;
+            table.filter(frame, &Paths { behind: None, chains: None, ..*paths }, changes)?.noisy
+        }
         None if passes.count == 0 => return Ok([terms.specular_direct, terms.specular_indirect]),
         None => smooth::add_specular(frame, terms, history)?,
     };

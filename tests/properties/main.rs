@@ -21,6 +21,7 @@ mod filter_anhpsf;
 mod filter_energy;
 mod filter_hash_key;
 mod filter_hpsf;
+mod filter_hpsf_changes;
 mod filter_hpsf_glossy;
 mod filter_hpsf_history;
 mod filter_hpsf_iterations;

@@ -4,7 +4,6 @@
 // tells nothing about the light on either, but that something has come into view there: filter/hpsf/forget.comp. Paths without the lobes that
 // the table is about are left out.
 #include "filter/hpsf/changes.glsl"
-#include "filter/hpsf/table.glsl"
 #include "lib/elements.glsl"
 #include "paths/retraced.glsl"
 
@@ -33,26 +32,18 @@ bool has_lobes(uint layer) {
     return PART == PART_GLOSSY ? layer != 0u : has_diffuse_lobe(layer);
 }
 
-/// Whether the slot is the key's.
-bool claim_change(CellKey key, uint slot) {
-    uint fingerprint = hash_fingerprint(key);
-    uint found = atomicCompSwap(changes.at[slot], NO_FINGERPRINT, fingerprint);
-    return found == NO_FINGERPRINT || found == fingerprint;
+uint change_fingerprint(uint at, uint own) {
+    uint held = atomicCompSwap(changes.at[at], NO_FINGERPRINT, own);
+    return held == NO_FINGERPRINT ? own : held;
 }
 
 /// `word` of its slot.
 void count(CellKey key, uint word) {
-    uint slot = change_slot(key);
-    if (claim_change(key, slot)) {
-        atomicAdd(changes.at[slot + word], 1u);
-    }
+    atomicAdd(changes.at[find_change(key) + word], 1u);
 }
 
 void add_path(CellKey key, vec3 now, vec3 before, float dither) {
-    uint slot = change_slot(key);
-    if (!claim_change(key, slot)) {
-        return;
-    }
+    uint slot = find_change(key);
     atomicAdd(changes.at[slot + 1u], 1u);
     for (uint channel = 0u; channel < 3u; channel++) {
         add_fixed(slot + 2u + 2u * channel, now[channel], dither);
@@ -79,16 +70,14 @@ void main() {
     uint layer = layer_of_part(path.layer);
     FilterPoint point = FilterPoint(path.position, unpack_normal(path.normal), arrives, path.now.distance, arrives * view_cosine, layer);
     if (abs(path.now.distance - before.distance) > cell) {
-        for (uint level = 0u; level < UNCOVERED_LEVELS; level++) {
-            count(uncovered_key(point, numbers, level), UNCOVERED);
-        }
+        count(surroundings_key(point, numbers), UNCOVERED);
         return;
     }
     float dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
     for (uint level = 0u; level < parameters.hpsf_levels + FURTHER_LEVELS; level++) {
         add_path(change_key(point, numbers, level), radiance_of(path.now), radiance_of(before), dither);
     }
-    for (uint level = 0u; level < UNCOVERED_LEVELS && others_changed(path.now, before); level++) {
-        count(uncovered_key(point, numbers, level), OTHER_LOBES);
+    if (others_changed(path.now, before)) {
+        count(surroundings_key(point, numbers), OTHER_LOBES);
     }
 }

@@ -46,23 +46,19 @@ vec3 sums_at(uint at) {
         from_fixed(changes.at[at + 4u], changes.at[at + 5u]));
 }
 
-Change change_of_key(CellKey key) {
-    uint slot = change_slot(key);
-    if (changes.at[slot] != hash_fingerprint(key)) {
-        return Change(0u, vec3(0.0), vec3(0.0));
-    }
-    return Change(changes.at[slot + 1u], sums_at(slot + 2u), sums_at(slot + 8u));
+uint change_fingerprint(uint at, uint own) {
+    return changes.at[at];
 }
 
-/// Whether there are retraced paths around a vertex that count in this word.
-bool is_told(FilterPoint point, vec4 numbers, uint word) {
-    bool told = false;
-    for (uint level = 0u; level < UNCOVERED_LEVELS; level++) {
-        CellKey key = uncovered_key(point, numbers, level);
-        uint slot = change_slot(key);
-        told = told || changes.at[slot] == hash_fingerprint(key) && changes.at[slot + word] > 0u;
-    }
-    return told;
+Change change_of_key(CellKey key) {
+    uint slot = find_change(key);
+    return slot == NO_SLOT ? Change(0u, vec3(0.0), vec3(0.0)) : Change(changes.at[slot + 1u], sums_at(slot + 2u), sums_at(slot + 8u));
+}
+
+/// Around a vertex, whether something has come into view, and whether lobes have changed that the table is not about.
+bvec2 told_around(FilterPoint point, vec4 numbers) {
+    uint slot = find_change(surroundings_key(point, numbers));
+    return slot == NO_SLOT ? bvec2(false) : bvec2(changes.at[slot + UNCOVERED] > 0u, changes.at[slot + OTHER_LOBES] > 0u);
 }
 
 /// At a level, or at the next coarser one where enough paths tell of it.
@@ -120,12 +116,15 @@ void main() {
         FilterPoint point = filter_point(uvec2(pixel), position, imageLoad(filter_normal, pixel).x, imageLoad(filter_incident, pixel).x);
         point.layer = layer;
         bool uncovered = false;
+        bool others_changed = false;
         for (uint i = 0u; i <= parameters.hpsf_lookups && (i == 0u || uncovered || shown > 0.0); i++) {
             vec4 numbers = jitter_numbers(uvec2(pixel), i);
-            uncovered = uncovered || is_told(point, numbers, UNCOVERED);
+            bvec2 told = told_around(point, numbers);
+            uncovered = uncovered || told.x;
+            others_changed = others_changed || told.y;
             shown = max(shown, forget_cells(point, numbers, uncovered));
         }
-        shown = uncovered || is_told(point, jitter_numbers(uvec2(pixel), 0u), OTHER_LOBES) ? 1.0 : shown;
+        shown = uncovered || others_changed ? 1.0 : shown;
     }
     imageStore(change, pixel, vec4(shown));
 }

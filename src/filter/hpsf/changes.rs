@@ -4,11 +4,15 @@
 //! claim to know. Puts out `hpsf_change` (`hpsf_change_indirect`, `specular_change`), the relative change in each pixel's cells. No history
 //! of its own.
 //!
-//! changes: 80 bytes read per retraced path, and per level 64 updated of a table of as many slots, which is cleared before. forget: 24 bytes
-//! read (of glossy lobes 28) and 4 written per pixel, and per level 64 read and, where there is change, 20 updated for each lookup.
+//! changes, once for the tables of direct and of indirect light: 80 bytes read per retraced path, and 64 updated for each of the filter's levels
+//! and two more, of a table of 64 bytes for each of four more, which is cleared before. forget: 24 bytes read (of glossy lobes 28) and 4 written per
+//! pixel, and per level 64 read and, where there is change, 20 updated for each lookup.
+//!
+//! What a table of changes says does not depend on the order of threads. That of cells can, where keys find no slot, unless hpsf.insertion orders
+//! them: with hpsf+ and an object that moves that happens to no or a few pixels of a frame.
 
-use super::{CAPACITY, FLOAT_SUMS, PART, SAMPLE_BITS, Table, sample_bits};
-use crate::frame::{FrameBuilder, ImageHandle};
+use super::{CAPACITY, FLOAT_SUMS, PART, Part, SAMPLE_BITS, Table, sample_bits};
+use crate::frame::{BufferHandle, FrameBuilder, ImageHandle};
 use crate::gpu::{GpuError, vk};
 use crate::paths::Retraced;
 use crate::paths::terms::Terms;
@@ -16,39 +20,43 @@ use crate::paths::terms::Terms;
 /// Specialization constant.
 const CHANGE_CAPACITY: u32 = 225;
 
-/// Levels that the shader adds to the filter's, those of what comes into view among them.
-const FURTHER_LEVELS: u32 = 4;
+/// Slots per path, besides the filter's levels: more than it has keys, two further levels and one for what comes into view or other lobes,
+/// so that no key is left without a slot, and every search ends.
+const FURTHER_SLOTS: u32 = 4;
 
 /// Bytes per slot.
 const CHANGE: u64 = 64;
 
-pub(super) fn add(
-    frame: &mut FrameBuilder,
-    table: &Table,
-    terms: &Terms,
-    retraced: Retraced,
-    levels: u32,
-) -> Result<ImageHandle, GpuError> {
-    let slots = retraced.paths * (levels + FURTHER_LEVELS);
-    let bits = sample_bits(table.insertions);
-    let names = table.options.part.names();
-    let changes = frame.buffer("hpsf changes", u64::from(slots) * CHANGE)?;
-    frame.fill("hpsf changes clear", changes, 0);
-    let pass = frame.pass(names.changes, "filter/hpsf/changes").elements(retraced.paths).constant(CHANGE_CAPACITY, slots);
-    let pass = pass
-        .constant(PART, table.options.part as u32)
-        .constant(SAMPLE_BITS, bits)
-        .reads("kept", retraced.before)
-        .reads("retraced", retraced.now);
-    pass.updates("changes", changes).add()?;
+/// What retraced paths say, by cell.
+#[derive(Debug, Clone, Copy)]
+pub struct Changes {
+    buffer: BufferHandle,
+    slots: u32,
+}
 
-    let change = frame.image(names.change, vk::Format::R32_SFLOAT)?;
-    let touched = table.insertions;
-    let pass = table.reads_points(frame.pass(names.forget, "filter/hpsf/forget"), terms).constant(CHANGE_CAPACITY, slots);
-    let pass = pass.constant(SAMPLE_BITS, bits).constant(CAPACITY, table.capacity).constant(FLOAT_SUMS, table.float_sums.into());
-    let pass = pass.reads("changes", changes).touching(touched * CHANGE);
-    let pass = pass.reads("keys", table.keys.current).touching(touched * table.key_bytes);
-    let pass = pass.reads("sums", table.sums).touching(touched * 4).updates("cells", table.cells.current).touching(touched * 4);
-    pass.updates("seeds", table.seeds).touching(touched * 4).writes("change", change).add()?;
-    Ok(change)
+impl Changes {
+    /// Of the lobes that tables of `part` are about: the same for all but the glossy one. `levels`: that a sample is added to.
+    pub(super) fn add(frame: &mut FrameBuilder, retraced: Retraced, part: Part, levels: u32) -> Result<Self, GpuError> {
+        let slots = retraced.paths * (levels + FURTHER_SLOTS);
+        let buffer = frame.buffer("hpsf changes", u64::from(slots) * CHANGE)?;
+        frame.fill("hpsf changes clear", buffer, 0);
+        let pass = frame.pass(part.names().changes, "filter/hpsf/changes").elements(retraced.paths);
+        let pass = pass.constant(CHANGE_CAPACITY, slots).constant(SAMPLE_BITS, sample_bits(slots.into())).constant(PART, part as u32);
+        pass.reads("kept", retraced.before).reads("retraced", retraced.now).updates("changes", buffer).add()?;
+        Ok(Self { buffer, slots })
+    }
+
+    /// Lets a table's cells forget.
+    pub(super) fn forget(&self, frame: &mut FrameBuilder, table: &Table, terms: &Terms) -> Result<ImageHandle, GpuError> {
+        let names = table.options.part.names();
+        let change = frame.image(names.change, vk::Format::R32_SFLOAT)?;
+        let touched = table.insertions;
+        let pass = table.reads_points(frame.pass(names.forget, "filter/hpsf/forget"), terms).constant(CHANGE_CAPACITY, self.slots);
+        let pass = pass.constant(SAMPLE_BITS, sample_bits(self.slots.into())).constant(CAPACITY, table.capacity);
+        let pass = pass.constant(FLOAT_SUMS, table.float_sums.into()).reads("changes", self.buffer).touching(touched * CHANGE);
+        let pass = pass.reads("keys", table.keys.current).touching(touched * table.key_bytes);
+        let pass = pass.reads("sums", table.sums).touching(touched * 4).updates("cells", table.cells.current).touching(touched * 4);
+        pass.updates("seeds", table.seeds).touching(touched * 4).writes("change", change).add()?;
+        Ok(change)
+    }
 }
