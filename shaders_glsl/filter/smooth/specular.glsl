@@ -28,5 +28,5 @@ void main() {
     vec3 sum = imageLoad(specular_direct, pixel).rgb + imageLoad(specular_indirect, pixel).rgb;
     float frames = frames_seen(pixel);
     imageStore(specular, pixel, storable(vec4(sum, mean_square(sum) / frames)));
-    imageStore(samples, pixel, uvec4(uint(frames)));
+    imageStore(samples, pixel, uvec4(uint(round(frames))));
 }
