@@ -14,7 +14,7 @@
 mod changes;
 mod iterate;
 
-use super::nhpsf;
+use super::nhpsf::{self, Sending};
 use super::smooth::Noisy;
 use crate::frame::{BufferHandle, FrameBuilder, History, ImageHandle, PassBuilder};
 use crate::gpu::{GpuError, vk};
@@ -218,13 +218,15 @@ impl Table {
         })
     }
 
-    /// Sends what cells know to the vertices before, and collects vertices behind the first one alone: of a table that is about these.
+    /// Sends what cells know to the vertices before, and collects vertices behind the first one alone: of a table that is about these. What
+    /// they send to the pixels' comes last, when cells know what this frame's paths have found.
     pub fn learn(&self, frame: &mut FrameBuilder, terms: &Terms, vertices: &PathVertices) -> Result<(), GpuError> {
-        nhpsf::transport(frame, self, terms, vertices)?;
+        nhpsf::transport(frame, self, terms, vertices, Sending::Behind)?;
         self.clear(frame);
         self.give_slots(frame, None, || std::iter::once(vertices))?;
         nhpsf::collect(frame, self, vertices)?;
-        self.merge(frame)
+        self.merge(frame)?;
+        nhpsf::transport(frame, self, terms, vertices, Sending::First)
     }
 
     fn clear(&self, frame: &mut FrameBuilder) {
@@ -241,7 +243,7 @@ impl Table {
     pub fn filter(&self, frame: &mut FrameBuilder, paths: &Paths, changes: Option<Changes>) -> Result<Filtered, GpuError> {
         let terms = &paths.terms;
         if let Some(vertices) = &paths.behind {
-            nhpsf::transport(frame, self, terms, vertices)?;
+            nhpsf::transport(frame, self, terms, vertices, Sending::All)?;
         }
         self.clear(frame);
         let behind = || [&paths.behind, &paths.chains].into_iter().flatten().filter(|vertices| vertices.options.sampled() > 0);
@@ -312,8 +314,17 @@ impl Table {
 
     /// A pass that looks keys up, as `known_keys` and `known_cells`, in what earlier frames have left.
     pub fn looks_up<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, keys: u64) -> PassBuilder<'b, 'a> {
-        let pass = pass.constant(CAPACITY, self.capacity).reads("known_keys", self.keys.previous);
-        pass.touching(keys * self.key_bytes).reads("known_cells", self.cells.previous).touching(keys * self.cell_bytes)
+        self.looks_up_in(pass, self.keys.previous, self.cells.previous, keys)
+    }
+
+    /// The same in what this frame's merge has left.
+    pub(super) fn looks_up_now<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, keys: u64) -> PassBuilder<'b, 'a> {
+        self.looks_up_in(pass, self.keys.current, self.cells.current, keys)
+    }
+
+    fn looks_up_in<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, keys: BufferHandle, cells: BufferHandle, count: u64) -> PassBuilder<'b, 'a> {
+        let pass = pass.constant(CAPACITY, self.capacity).reads("known_keys", keys).touching(count * self.key_bytes);
+        pass.reads("known_cells", cells).touching(count * self.cell_bytes)
     }
 
     /// A pass that adds samples to cells of each level.

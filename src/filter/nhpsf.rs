@@ -2,7 +2,8 @@
 //! [`super::hpsf`], whose table they share.
 //!
 //! transport: takes the lists of vertices and the last frame's table; adds what the vertices send to the one before them to the lists'
-//! radiance, and to the terms `diffuse_indirect` and `specular_indirect`. Reads 40 bytes a pixel and 48 a vertex, 20 (at fp16: 12) for
+//! radiance, and to the terms `diffuse_indirect` and `specular_indirect`; of a table of these vertices alone, the terms get theirs from this
+//! frame's table, in a pass behind collect. Reads 40 bytes a pixel and 48 a vertex, 20 (at fp16: 12) for
 //! each level of a vertex, and writes 32 and 16. collect: takes the lists; adds each vertex's radiance to its cell, as hpsf's collect does.
 
 use super::hpsf::Table;
@@ -11,14 +12,37 @@ use crate::gpu::GpuError;
 use crate::paths::terms::Terms;
 use crate::paths::vertices::PathVertices;
 
-/// Specialization constant: vertices of a list that enter cells.
+/// Specialization constants: vertices of a list that enter cells; steps of transport.
 const STORED_VERTICES: u32 = 206;
+const RECEIVES: u32 = 207;
+const SENDS: u32 = 208;
 
-pub(super) fn transport(frame: &mut FrameBuilder, table: &Table, terms: &Terms, vertices: &PathVertices) -> Result<(), GpuError> {
-    let keys = u64::from(frame.pixels()) * u64::from(vertices.options.most);
-    let pass = reads_places(frame.pass("nhpsf transport", "filter/nhpsf/transport"), vertices).updates("vertex_light", vertices.light);
+/// Which vertices send, and which cells they look up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sending {
+    /// All of them, those of the last frame.
+    All,
+    /// Those behind the first one of the list, the same.
+    Behind,
+    /// The first one of the list, this frame's.
+    First,
+}
+
+pub(super) fn transport(
+    frame: &mut FrameBuilder,
+    table: &Table,
+    terms: &Terms,
+    vertices: &PathVertices,
+    sending: Sending,
+) -> Result<(), GpuError> {
+    let pixels = u64::from(frame.pixels());
+    let (first, name) = (sending == Sending::First, if sending == Sending::First { "nhpsf send" } else { "nhpsf transport" });
+    let pass = frame.pass(name, "filter/nhpsf/transport").constant(RECEIVES, (!first).into());
+    let pass = reads_places(pass.constant(SENDS, (sending != Sending::Behind).into()), vertices);
+    let pass = pass.updates("vertex_light", vertices.light).reads("specular_attenuation", vertices.specular_attenuation);
     let pass = pass.updates("diffuse_indirect", terms.diffuse_indirect).updates("specular_indirect", terms.specular_indirect);
-    table.looks_up(pass.reads("specular_attenuation", vertices.specular_attenuation), keys).add()
+    let pass = if first { table.looks_up_now(pass, pixels) } else { table.looks_up(pass, pixels * u64::from(vertices.options.most)) };
+    pass.add()
 }
 
 pub(super) fn collect(frame: &mut FrameBuilder, table: &Table, vertices: &PathVertices) -> Result<(), GpuError> {

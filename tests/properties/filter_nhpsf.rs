@@ -192,9 +192,10 @@ fn second_vertices_that_are_read_bring_the_same_light_by_fewer_rays_and_with_les
     let [traced, read] = ["trace", "cells"].map(|second| {
         set(&mut settings, &[("hpsf.second", second)]);
         let mut renderer = render_frames(&common::gpu(), &builtin("cornell"), &settings, "hpsf", 8);
-        (renderer.timings().unwrap().rays.per_pixel, variance_of_indirect_light(&settings, 8))
+        (renderer.timings().unwrap().rays.per_pixel, [1, 8].map(|frames| variance_of_indirect_light(&settings, frames)))
     });
-    assert!(read.0 < 0.8 * traced.0 && read.1 < 0.6 * traced.1, "{read:?} {traced:?}");
+    // In the first frame cells know what its own paths have found; all of these were traced to their end.
+    assert!(read.0 < 0.8 * traced.0 && read.1[0] < 0.8 * traced.1[0] && read.1[1] < 0.6 * traced.1[1], "{read:?} {traced:?}");
     let (found, of_found) = mean_of_runs(&builtin("cornell"), &settings, "hpsf", 32);
     let error = (of_truth + of_found).sqrt() / truth;
     assert!((found / truth - 1.0).abs() < 0.01 + 4.0 * error, "{} +- {error}", found / truth);

@@ -1,4 +1,4 @@
-// What the last frame's cells know of a vertex.
+// What cells know of a vertex.
 #ifndef FILTER_NHPSF_KNOWN_GLSL
 #define FILTER_NHPSF_KNOWN_GLSL
 
