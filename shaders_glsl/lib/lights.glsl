@@ -1,7 +1,8 @@
 // Choosing a light, a point or direction on it, and the density of that choice for directions found otherwise (multiple importance sampling).
 //
-// Lights are chosen by power (alias table, src/scene/lights.rs). Triangles: uniform in area. Spheres: uniform in the cone they fill,
-// Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", 1996; from inside, over all directions.
+// Lights are chosen by power: a scene's only one without a size by its share, the others from an alias table (src/scene/lights.rs).
+// Triangles: uniform in area. Spheres: uniform in the cone they fill, Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting
+// Calculations", 1996; from inside, over all directions.
 // Environment maps: texels by the alias method, in proportion to radiance times solid angle, uniform in (u, v) within a texel.
 // Point, spot and directional lights, falloff and range: KHR_lights_punctual ("Range Property", "Inner and Outer Cone Angles").
 //
@@ -214,16 +215,33 @@ bool sample_environment(vec2 u, inout LightSample result) {
     return true;
 }
 
-/// Chooses a light by u.xy (bucket, threshold) and a direction to it by u.zw. Returns false where it does not shine on `position`.
-bool sample_light(vec3 position, vec4 u, out LightSample result) {
+/// The sole light, with the probability `chosen`. Returns false where it does not shine on `position`.
+bool sample_sole_light(vec3 position, float chosen, out LightSample result) {
+    result = LightSample(vec3(0.0, 0.0, 1.0), FAR_AWAY, vec3(0.0), chosen, true, frame.sole_light);
+    if (!EFFECT_SOLE_LIGHT || frame.sole_light == ~0u) {
+        return false;
+    }
+    PunctualLight light = PunctualLightBuffer(frame.punctual_lights).at[frame.sole_light];
+    return sample_punctual_light(LightBuffer(frame.lights).at[frame.sole_light].kind, light, position, result);
+}
+
+/// Chooses a light by u.xy (bucket, threshold) and a direction to it by u.zw; `apart`: not the sole one. Returns false where it does not
+/// shine on `position`.
+bool sample_light(vec3 position, vec4 u, bool apart, out LightSample result) {
+    float sole = EFFECT_SOLE_LIGHT ? frame.sole_probability : 0.0;
+    if (!apart && u.x < sole) {
+        return sample_sole_light(position, sole, result);
+    }
     result = LightSample(vec3(0.0, 0.0, 1.0), FAR_AWAY, vec3(0.0), 0.0, false, 0u);
     if (frame.light_count == 0u) {
         return false;
     }
+    float others = 1.0 - sole;
+    u.x = apart ? u.x : min((u.x - sole) / others, 0.99999994);
     uint bucket = alias_bucket(frame.light_count, u.x);
     result.light = alias_choice(AliasBuffer(frame.light_alias).at[bucket], bucket, u.y);
     Light light = LightBuffer(frame.lights).at[result.light];
-    result.pdf = light.probability;
+    result.pdf = apart ? light.probability / others : light.probability;
     if (EFFECT_EMISSIVE_LIGHT && light.kind == LIGHT_TRIANGLE) {
         return sample_triangle_light(light, position, u.zw, result);
     }

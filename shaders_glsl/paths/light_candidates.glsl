@@ -46,10 +46,10 @@ float competing_pdf(float light_pdf) {
     return light_pdf * float(light_candidates());
 }
 
-/// By u: light (2), point on it (2). False where it brings nothing.
-bool light_candidate(vec3 position, Surface surface, vec3 wo, Techniques techniques, vec4 u, out ChosenLight light) {
+/// By u: light (2), point on it (2); `apart`: of the lights other than the sole one. False where it brings nothing.
+bool light_candidate(vec3 position, Surface surface, vec3 wo, Techniques techniques, vec4 u, bool apart, out ChosenLight light) {
     LightSample found;
-    if (!sample_light(position, u, found) || (DIRECT == DIRECT_BSDF && !found.delta)) {
+    if (!sample_light(position, u, apart, found) || (DIRECT == DIRECT_BSDF && !found.delta)) {
         return false;
     }
     BsdfValue value = evaluate_with(surface, wo, found.direction, techniques);
@@ -58,8 +58,20 @@ bool light_candidate(vec3 position, Surface surface, vec3 wo, Techniques techniq
     return true;
 }
 
-/// By u for the first candidate and `selection` among all, both uniform. False where no candidate brings anything.
-bool choose_light(vec3 position, Surface surface, vec3 wo, vec4 u, float selection, out ChosenLight chosen) {
+/// The sole light, with certainty. False where it brings nothing.
+bool choose_sole_light(vec3 position, Surface surface, vec3 wo, out ChosenLight chosen) {
+    LightSample found;
+    if (!sample_sole_light(position, 1.0, found)) {
+        return false;
+    }
+    BsdfValue value = evaluate_with(surface, wo, found.direction, sampling_techniques(surface, wo));
+    chosen = ChosenLight(found.direction, found.distance, found.radiance, value);
+    return true;
+}
+
+/// By u for the first candidate and `selection` among all, both uniform; `apart`: of the lights other than the sole one. False where no
+/// candidate brings anything.
+bool choose_light(vec3 position, Surface surface, vec3 wo, vec4 u, float selection, bool apart, out ChosenLight chosen) {
     uint count = light_candidates();
     vec3 albedo = diffuse_albedo(surface);
     Techniques techniques = sampling_techniques(surface, wo);
@@ -68,7 +80,7 @@ bool choose_light(vec3 position, Surface surface, vec3 wo, vec4 u, float selecti
     for (uint i = 0u; i < count; i++) {
         vec4 numbers = vec4((float(i) + u.x) / float(count), fract(u.yzw + float(i) * CANDIDATE_ROTATION));
         ChosenLight light;
-        if (!light_candidate(position, surface, wo, techniques, numbers, light)) {
+        if (!light_candidate(position, surface, wo, techniques, numbers, apart, light)) {
             continue;
         }
         float contribution = max_component((albedo * light.value.diffuse + light.value.specular) * light.radiance);

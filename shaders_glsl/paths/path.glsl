@@ -32,6 +32,8 @@ const uint SELECTION_PAIRS = EXTRA_PAIRS + 2u * 16u;
 
 const uint NO_VERTEX = ~0u;
 
+const uint LIGHTS_SOLE_APART = 1u;
+
 struct Path {
     /// The scattered ray: being traced, or to be traced after this vertex's shadow rays.
     Ray ray;
@@ -151,10 +153,23 @@ uint alpha_seed(Path path) {
     return EFFECT_ALPHA_BLEND ? pcg3d(uvec3(path.numbers.scramble, path.numbers.index, path.vertex)).x : 0u;
 }
 
+/// The sole light has a shadow ray of its own where the camera's ray arrives (lights.sole).
+bool has_sole_ray(uint vertex) {
+    return EFFECT_SOLE_LIGHT && LIGHTS_SOLE == LIGHTS_SOLE_APART && vertex == 0u;
+}
+
+/// Visits to the first vertex, one for each of its shadow rays.
+uint first_visits() {
+    return parameters.first_shadow_rays + (has_sole_ray(0u) ? 1u : 0u);
+}
+
 /// For light found by following the path's ray, against light sampling with density `light_pdf`.
 float emission_weight(Path path, float light_pdf) {
     if (path.delta || DIRECT == DIRECT_BSDF) {
         return 1.0;
+    }
+    if (path.vertex == 1u && has_sole_ray(0u)) {
+        light_pdf /= 1.0 - frame.sole_probability;
     }
     return DIRECT == DIRECT_NEE ? 0.0 : power_heuristic(path.pdf, competing_pdf(light_pdf));
 }
@@ -194,16 +209,12 @@ bool is_diffuse(HitPoint point) {
     return max_component(diffuse_albedo(point.surface)) > 0.0;
 }
 
-/// Looks for light at a vertex, by one of `rays` shadow rays; nothing waits where there is none to be found.
-Pending sample_direct(Path path, Terms terms, HitPoint point, vec3 wo, vec4 u, float selection, float rays) {
+/// Light that may arrive at a vertex from a light.
+Pending pending_light(Path path, Terms terms, HitPoint point, ChosenLight light) {
     Pending pending;
     pending.ray = NO_RAY;
-    ChosenLight light;
-    if (!choose_light(point.origin.position, point.surface, wo, u, selection, light)) {
-        return pending;
-    }
     BsdfValue value = light.value;
-    vec3 radiance = light.radiance / rays;
+    vec3 radiance = light.radiance;
     vec3 albedo = diffuse_albedo(point.surface);
     if (path.vertex == path.filter_vertex) {
         pending.term = vertices_behind(terms) > 0u ? TERM_BEHIND : TERM_DIRECT;
@@ -219,6 +230,30 @@ Pending sample_direct(Path path, Terms terms, HitPoint point, vec3 wo, vec4 u, f
     vec3 most = max(vec3(pending.diffuse_weight), pending.specular_weight) * pending.radiance;
     if (max(most.r, max(most.g, most.b)) > 0.0) {
         pending.ray = shadow_ray(point.origin, light.direction, light.distance);
+    }
+    return pending;
+}
+
+/// Looks for light at a vertex, by one of `rays` shadow rays; nothing waits where there is none to be found.
+Pending sample_direct(Path path, Terms terms, HitPoint point, vec3 wo, vec4 u, float selection, float rays) {
+    ChosenLight light;
+    Pending pending;
+    pending.ray = NO_RAY;
+    if (choose_light(point.origin.position, point.surface, wo, u, selection, has_sole_ray(path.vertex), light)) {
+        light.radiance /= rays;
+        pending = pending_light(path, terms, point, light);
+    }
+    return pending;
+}
+
+/// The sole light at the first vertex, in front of filters: it has no noise that they could take away.
+Pending sample_sole(Path path, Terms terms, HitPoint point, vec3 wo) {
+    ChosenLight light;
+    Pending pending;
+    pending.ray = NO_RAY;
+    if (choose_sole_light(point.origin.position, point.surface, wo, light)) {
+        pending = pending_light(path, terms, point, light);
+        pending.term = TERM_BEFORE;
     }
     return pending;
 }
@@ -367,9 +402,16 @@ bool visit(inout Path path, Hit hit, bool arrives, inout uint shadow_rays, inout
     if (arrives && !arrive(path, hit, point, terms)) {
         return false;
     }
+    if (arrives && has_sole_ray(path.vertex)) {
+        shadow_rays = parameters.first_shadow_rays;
+        pending = sample_sole(path, terms, point, wo);
+        pending.alpha_seed = alpha_seed(path) + 1u + shadow_rays;
+        return true;
+    }
     uint rays = path.vertex == 0u ? parameters.first_shadow_rays : 1u;
     shadow_rays = (arrives ? rays : shadow_rays) - 1u;
-    path.numbers.dimension = arrives ? 1u + PAIRS_PER_VERTEX * path.vertex : EXTRA_PAIRS + 2u * shadow_rays;
+    bool first = shadow_rays == rays - 1u;
+    path.numbers.dimension = first ? 1u + PAIRS_PER_VERTEX * path.vertex : EXTRA_PAIRS + 2u * shadow_rays;
     vec4 light;
     light.xy = sample_2d(path.numbers);
     light.zw = sample_2d(path.numbers);

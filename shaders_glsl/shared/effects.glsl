@@ -20,5 +20,6 @@ layout(constant_id = 13) const bool EFFECT_CAMERA_ANIMATION = true;
 layout(constant_id = 14) const bool EFFECT_OBJECT_ANIMATION = true;
 layout(constant_id = 15) const bool EFFECT_UNLIT = true;
 layout(constant_id = 16) const bool EFFECT_VERTEX_COLORS = true;
+layout(constant_id = 17) const bool EFFECT_SOLE_LIGHT = true;
 
 #endif

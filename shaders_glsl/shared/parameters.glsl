@@ -41,6 +41,9 @@ layout(constant_id = 108) const uint SCRAMBLE = 0;
 //@ paths.kernel megakernel megakernel|wavefront
 /// Whole paths in one kernel, or a kernel for each step of all paths, with queues between them (Laine et al. 2013). The same picture; wavefront holds 196 bytes per pixel (284 for filters), and pays where rays and materials diverge on wide devices.
 layout(constant_id = 109) const uint PATHS_KERNEL = 0;
+//@ lights.sole sampled sampled|apart
+/// A scene's only point, spot or directional light, where the camera sees what it shines on: one among the lights that shadow rays are sent to by chance, or with a shadow ray of its own, whose light has no noise and goes past all filters. Apart: sharp shadows in the first frame, and less noise of the other lights; one more ray per pixel.
+layout(constant_id = 110) const uint LIGHTS_SOLE = 0;
 //@ paths.albedo apart apart|divided
 /// Albedo at the filter vertex: kept apart and multiplied in after filters, or multiplied in while tracing, divided out for filters (by 0.001 at least), multiplied again. Divided loses channels of zero albedo and precision (Meijer, section 4.1).
 layout(constant_id = 120) const uint ALBEDO = 0;

@@ -180,6 +180,10 @@ struct FrameData {
     uint light_count;
     /// Index of the environment in lights, ~0u if it does not shine.
     uint environment_light;
+    /// Index of the only light without a size, ~0u if there is none or there are several, and its share of all power: the alias table is of the
+    /// others.
+    uint sole_light;
+    float sole_probability;
     uvec2 environment_size;
     /// Constant environment's radiance.
     vec3 environment_radiance;

@@ -38,18 +38,19 @@ const VERTEX: u64 = 44;
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     pub max_bounces: u32,
-    pub first_shadow_rays: u32,
+    /// Shadow rays of the first vertex.
+    pub first_visits: u32,
 }
 
 impl Options {
     /// Visits to vertices: the one after the last scattering can only find a light.
     fn turns(self) -> u32 {
-        self.first_shadow_rays + self.max_bounces + 1
+        self.first_visits + self.max_bounces + 1
     }
 
     /// Whether the turn begins with a ray that arrives, or is another visit to the first vertex.
     fn arrives(self, turn: u32) -> bool {
-        turn == 0 || turn >= self.first_shadow_rays
+        turn == 0 || turn >= self.first_visits
     }
 }
 
@@ -228,8 +229,8 @@ mod tests {
 
     #[test]
     fn every_bounce_has_a_turn_and_so_has_every_further_shadow_ray() {
-        let turns = |max_bounces, first_shadow_rays| {
-            let options = Options { max_bounces, first_shadow_rays };
+        let turns = |max_bounces, first_visits| {
+            let options = Options { max_bounces, first_visits };
             let arrivals = (0..options.turns()).filter(|&turn| options.arrives(turn)).count();
             (options.turns(), arrivals)
         };

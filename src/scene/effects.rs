@@ -33,10 +33,11 @@ pub enum Effect {
     ObjectAnimation,
     Unlit,
     VertexColors,
+    SoleLight,
 }
 
 impl Effect {
-    pub const ALL: [Effect; 17] = [
+    pub const ALL: [Effect; 18] = [
         Effect::Glossy,
         Effect::Mirror,
         Effect::SmoothTransmission,
@@ -54,6 +55,7 @@ impl Effect {
         Effect::ObjectAnimation,
         Effect::Unlit,
         Effect::VertexColors,
+        Effect::SoleLight,
     ];
 
     pub fn name(self) -> &'static str {
@@ -75,6 +77,7 @@ impl Effect {
             Effect::ObjectAnimation => "object animation",
             Effect::Unlit => "unlit",
             Effect::VertexColors => "vertex colors",
+            Effect::SoleLight => "sole light",
         }
     }
 
@@ -271,6 +274,10 @@ fn reason_in_lights(scene: &Scene, effect: Effect) -> Option<String> {
     };
     match effect {
         Effect::PunctualLight => light_that(|kind| !matches!(kind, LightKind::Sphere { .. })),
+        Effect::SoleLight => {
+            let light = &scene.lights[super::lights::sole_light(scene)? as usize];
+            Some(format!("light '{}', the only one without a size", light.name))
+        }
         Effect::SphereLight => light_that(|kind| matches!(kind, LightKind::Sphere { .. })),
         Effect::EnvironmentLight => match &scene.environment {
             Environment::Constant(radiance) => shines(*radiance).then(|| "constant environment".to_owned()),

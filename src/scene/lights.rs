@@ -6,10 +6,13 @@
 
 use super::alias::AliasBuilder;
 use super::emission::mean_emission;
-use super::{LightKind, Mesh, Scene};
+use super::{Light, LightKind, Mesh, Scene};
 use crate::shared::{self, AliasEntry};
 use glam::{DMat3, DMat4, DVec3};
 use std::f64::consts::PI;
+
+/// Largest probability of choosing the sole light where there are others, so that theirs does not vanish in rounding.
+const MOST_SOLE_SHARE: f64 = 0.999;
 
 /// Device data of all lights.
 pub struct LightTable {
@@ -23,6 +26,8 @@ pub struct LightTable {
     /// Scene light of each of the first lights.
     punctual: Vec<u32>,
     environment_light: u32,
+    /// Index of [`sole_light`] among these; u32::MAX without.
+    sole: u32,
     environment_integral: f64,
     emitters: Vec<Vec<Emitter>>,
     instances: Vec<InstanceLights>,
@@ -66,9 +71,23 @@ impl LightTable {
                 ..Default::default()
             }));
         }
+        let sole = sole_light(scene).and_then(|sole| punctual.iter().position(|&light| light == sole));
+        let sole = sole.map_or(u32::MAX, |index| index as u32);
         let powers = vec![0.0; lights.len()];
         let (alias, builder) = (Vec::with_capacity(lights.len()), AliasBuilder::default());
-        Self { lights, punctual_lights, alias, powers, builder, punctual, environment_light, environment_integral, emitters, instances }
+        Self {
+            lights,
+            punctual_lights,
+            alias,
+            powers,
+            builder,
+            punctual,
+            environment_light,
+            sole,
+            environment_integral,
+            emitters,
+            instances,
+        }
     }
 
     /// Places all lights by `world`, the world matrix of each node, relative to `origin`, in a scene of `radius` metres, and chooses by their
@@ -94,9 +113,15 @@ impl LightTable {
                 }
             }
         }
-        let sum = self.builder.build(&self.powers, &mut self.alias);
+        let of_sole = self.powers.get_mut(self.sole as usize).map_or(0.0, std::mem::take);
+        let others = self.builder.build(&self.powers, &mut self.alias);
+        let sole_share = if others > 0.0 { (of_sole / (of_sole + others)).min(MOST_SOLE_SHARE) } else { 1.0 };
         for (light, power) in self.lights.iter_mut().zip(&self.powers) {
-            light.probability = if sum > 0.0 { (power / sum) as f32 } else { 0.0 };
+            light.probability = if others > 0.0 { ((1.0 - sole_share) * power / others) as f32 } else { 0.0 };
+        }
+        if let Some(light) = self.lights.get_mut(self.sole as usize) {
+            light.probability = sole_share as f32;
+            self.powers[self.sole as usize] = of_sole;
         }
     }
 
@@ -113,9 +138,14 @@ impl LightTable {
         &self.alias
     }
 
-    /// Lights to choose from: 0 where nothing shines.
+    /// Lights to choose from, but for the [`Self::sole`] one: 0 where nothing else shines.
     pub fn count(&self) -> u32 {
         self.alias.len() as u32
+    }
+
+    /// Index of [`sole_light`], u32::MAX where there is none, and the probability of choosing it: its share of all power.
+    pub fn sole(&self) -> (u32, f32) {
+        (self.sole, self.lights.get(self.sole as usize).map_or(0.0, |light| light.probability))
     }
 
     /// Index of the environment, u32::MAX where it is black.
@@ -127,6 +157,13 @@ impl LightTable {
     pub fn first_lights(&self) -> impl Iterator<Item = u32> {
         self.instances.iter().map(|instance| instance.first)
     }
+}
+
+/// The scene's light without a size, where there is only one that shines.
+pub fn sole_light(scene: &Scene) -> Option<u32> {
+    let shines = |light: &Light| !matches!(light.kind, LightKind::Sphere { .. }) && light.color.iter().any(|&x| x > 0.0);
+    let mut lights = (0..).zip(&scene.lights).filter(|(_, light)| shines(light)).map(|(index, _)| index);
+    lights.next().filter(|_| lights.next().is_none())
 }
 
 /// [`shared::Mesh::triangle_emitters`] of each mesh: the rank of each triangle among those that emit, u32::MAX for the others. Empty where

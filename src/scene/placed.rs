@@ -87,6 +87,7 @@ impl PlacedScene {
         data.light_alias = slot.alias.address();
         data.light_count = self.lights.count();
         data.environment_light = self.lights.environment_light();
+        (data.sole_light, data.sole_probability) = self.lights.sole();
         data.environment_size = self.environment_size;
         data.environment_radiance = self.environment_radiance;
         if let Some([texels, alias]) = &self.environment {

@@ -7,6 +7,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
     help: "hpsf at fine cells, direct and indirect light apart, paths short where nothing moves, smoothed over the screen as far as noise goes, and antialiased over frames",
     defaults: &[
         ("paths.scramble", "tile"),
+        ("lights.sole", "apart"),
         ("frame.jitter", "on"),
         // Frames at several offsets are sharper than one: half a level finer, as antialiasing over frames allows.
         ("textures.lod_bias", "-0.5"),

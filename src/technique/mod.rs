@@ -25,7 +25,7 @@ use crate::display::rounds;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
 use crate::paths::{Kernel, WavefrontOptions};
-use crate::scene::effects::EffectSet;
+use crate::scene::effects::{Effect, EffectSet};
 
 /// One way from samples to a picture.
 pub struct Technique {
@@ -91,9 +91,10 @@ impl PassOptions<'_> {
         if number("paths.kernel") == 0 {
             return Kernel::Megakernel;
         }
+        let has_sole_ray = number("lights.sole") == 1 && self.effects.contains(Effect::SoleLight);
         Kernel::Wavefront(WavefrontOptions {
             max_bounces: number("paths.max_bounces"),
-            first_shadow_rays: number("rays.first_shadow_rays"),
+            first_visits: number("rays.first_shadow_rays") + u32::from(has_sole_ray),
         })
     }
 }

@@ -110,6 +110,30 @@ fn samplers_roulette_and_extra_shadow_rays_do_not_change_the_picture() {
     assert_switches_agree(&gpu, &builtin("cornell"), &settings(32, 32), &changes);
 }
 
+/// A point light among spheres under a sky: the same picture, by the megakernel and by the wavefront, and without the noise of
+/// choosing between them.
+#[test]
+fn a_sole_light_apart_takes_noise_from_the_picture_and_nothing_else() {
+    let gpu = common::gpu();
+    let mut scene = builtin("furnace");
+    let node = scene.nodes.len() as u32;
+    let local = Local::Matrix(DMat4::from_translation(DVec3::new(0.5, 2.0, 3.0)));
+    scene.nodes.push(Node { name: String::new(), parent: None, local });
+    scene.lights.push(Light { name: String::new(), node, color: [9.0, 8.0, 7.0], kind: LightKind::Point, range: None });
+    let plain = settings(32, 32);
+    let changes: [&[(&str, &str)]; 4] = [
+        &[("lights.sole", "apart")],
+        &[("lights.sole", "apart"), ("paths.direct", "nee"), ("rays.first_shadow_rays", "2")],
+        &[("lights.sole", "apart"), ("paths.direct", "bsdf")],
+        &[("lights.sole", "apart"), ("paths.kernel", "wavefront")],
+    ];
+    assert_switches_agree(&gpu, &scene, &plain, &changes);
+    let mut apart = plain.clone();
+    set(&mut apart, &[("lights.sole", "apart")]);
+    let [sampled, apart] = [&plain, &apart].map(|settings| mean(&render(&gpu, &scene, settings, FRAMES).variance));
+    assert!(apart < 0.95 * sampled, "{apart} instead of {sampled}");
+}
+
 #[test]
 fn every_structure_and_both_triangle_tests_see_the_same_scene() {
     let gpu = common::gpu();

@@ -102,8 +102,12 @@ fn the_wavefront_makes_the_megakernels_picture_with_everything_in_it() {
     let scene = everything();
     let reference = Settings { view: view(), ..settings(40, 28) };
     assert_same(&gpu, "everything", &scene, &reference, 1.0);
-    let apart = Settings { technique: technique::find("unfiltered").unwrap(), ..reference };
+    let mut apart = Settings { technique: technique::find("unfiltered").unwrap(), ..reference };
     assert_same(&gpu, "everything", &scene, &apart, 1.0);
+    for rays in ["1", "3"] {
+        set(&mut apart, &[("lights.sole", "apart"), ("rays.first_shadow_rays", rays)]);
+        assert_same(&gpu, "sole light apart", &scene, &apart, 1.0);
+    }
 }
 
 /// Several shadow rays at the first vertex are several visits; further samples are all passes once more, for some of the pixels.

@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 const KERNEL: &str = "
 #include \"lib/lights.glsl\"
 #include \"lib/rng.glsl\"
-struct In { vec3 position; uint seed; };
+struct In { vec3 position; uint seed; uint apart; };
 struct Out { vec3 direction; float distance; vec3 radiance; float pdf; uint light; uint valid; float same_pdf; };
 vec3 emitted_radiance(uint instance, uint primitive, vec2 barycentrics) {
     return vec3(1.0, 2.0, 3.0);
@@ -41,7 +41,9 @@ float found_pdf(LightSample s, vec3 position) {
 void kernel(uint i) {
     uvec4 bits = pcg4d(uvec4(i, inputs[i].seed, 3u, 4u));
     LightSample s;
-    bool valid = sample_light(inputs[i].position, vec4(unit_float(bits.xy), unit_float(bits.zw)), s);
+    bool valid = sample_light(inputs[i].position, vec4(unit_float(bits.xy), unit_float(bits.zw)), inputs[i].apart == 1u, s);
+    // A ray that finds a light is not told that the sole one is apart: paths/path.glsl takes it into account.
+    s.pdf *= inputs[i].apart == 1u ? 1.0 - frame.sole_probability : 1.0;
     float same = valid && !s.delta ? found_pdf(s, inputs[i].position) : s.pdf;
     outputs[i] = Out(s.direction, s.distance, s.radiance, s.pdf, s.light, valid ? 1u : 0u, same);
 }
@@ -52,6 +54,7 @@ void kernel(uint i) {
 struct In {
     position: [f32; 3],
     seed: u32,
+    apart: u32,
 }
 
 #[repr(C)]
@@ -159,6 +162,8 @@ fn lit(gpu: &Gpu, scene: &Scene) -> Lit {
         environment_alias: upload(bytemuck::cast_slice(&distribution.alias)),
         environment_texels: upload(bytemuck::cast_slice(&distribution.texels)),
         light_count: table.count(),
+        sole_light: table.sole().0,
+        sole_probability: table.sole().1,
         environment_light: table.environment_light(),
         environment_size: distribution.size,
         environment_radiance: radiance,
@@ -168,8 +173,13 @@ fn lit(gpu: &Gpu, scene: &Scene) -> Lit {
 }
 
 fn samples(gpu: &Gpu, scene: &Scene, position: [f32; 3], count: u32) -> Vec<Out> {
+    samples_of(gpu, scene, position, count, false)
+}
+
+/// `apart`: of the lights other than the sole one.
+fn samples_of(gpu: &Gpu, scene: &Scene, position: [f32; 3], count: u32, apart: bool) -> Vec<Out> {
     let lit = lit(gpu, scene);
-    let inputs: Vec<In> = (0..count).map(|seed| In { position, seed }).collect();
+    let inputs: Vec<In> = (0..count).map(|seed| In { position, seed, apart: apart.into() }).collect();
     common::run_kernel_with(gpu, KERNEL, &inputs, &lit.options)
 }
 
@@ -305,6 +315,39 @@ fn lights_and_texels_are_chosen_in_proportion_to_their_power() {
     let expected: Vec<f64> = distribution.texels.iter().map(|texel| f64::from(texel[3]) / 512.0 * environment.len() as f64).collect();
     let chosen = chi_square_test(&observed, &expected);
     assert!(environment.len() > 10_000 && chosen.p_value > significance, "{chosen:?}");
+}
+
+/// The light without a size is chosen by its probability, or never; what is left for the others is theirs in proportion to their power. At
+/// significance 1e-4.
+#[test]
+fn a_sole_light_may_stand_apart() {
+    let gpu = common::gpu();
+    let mut scene = crowded_scene();
+    scene.lights.truncate(2);
+    let table = lit(&gpu, &scene).table;
+    let (sole, share) = table.sole();
+    assert!(matches!(scene.lights[0].kind, LightKind::Point) && share > 0.0 && share < 1.0, "{share}");
+    let count = 200_000;
+    for apart in [false, true] {
+        let outs = samples_of(&gpu, &scene, [0.3, 0.2, 0.0], count, apart);
+        let mut observed = vec![0u64; table.lights().len()];
+        outs.iter().for_each(|out| observed[out.light as usize] += 1);
+        let scale = if apart { 1.0 / (1.0 - f64::from(share)) } else { 1.0 };
+        let mut expected: Vec<f64> = table.lights().iter().map(|light| f64::from(light.probability) * scale * f64::from(count)).collect();
+        if apart {
+            assert_eq!(observed.swap_remove(sole as usize), 0);
+            expected.swap_remove(sole as usize);
+        }
+        let chosen = chi_square_test(&observed, &expected);
+        assert!(chosen.p_value > sidak(1e-4, 2), "{observed:?} for {expected:?}");
+        let differing = outs.iter().filter(|out| out.valid == 1 && (out.pdf - out.same_pdf).abs() > 1e-3 * out.pdf).count();
+        assert!(differing <= 100, "{differing} of {count} differ");
+    }
+    scene.lights.push(light(LightKind::Directional));
+    assert_eq!(lit(&gpu, &scene).table.sole(), (u32::MAX, 0.0));
+    let alone = light_scene(LightKind::Directional, DMat4::IDENTITY);
+    assert!(samples(&gpu, &alone, [0.0; 3], 100).iter().all(|out| out.valid == 1 && out.pdf == 1.0));
+    assert!(samples_of(&gpu, &alone, [0.0; 3], 100, true).iter().all(|out| out.valid == 0));
 }
 
 /// The mean of radiance over density is the map's integral, whose oracle interpolates and integrates it in double precision.

@@ -1,7 +1,7 @@
 // Wavefront path tracing: one visit to the vertex that each path has arrived at (`visit` of paths/path.glsl). The light that it might
 // get goes to one queue with its shadow ray, the path itself to another if it goes on.
 //
-// A turn is one visit. The first vertex has rays.first_shadow_rays of them, one for each shadow ray; every other one has one.
+// A turn is one visit. The first vertex has one for each of its shadow rays; every other one has one.
 #include "paths/wavefront/append.glsl"
 #include "paths/wavefront/state.glsl"
 #include "paths/wavefront/sums.glsl"
@@ -47,10 +47,10 @@ bool shade(uint slot, inout Pending pending) {
     if (!filters) {
         terms.attenuation = front.at[slot].attenuation;
     }
-    bool arrives = turn == 0u || turn >= parameters.first_shadow_rays;
+    bool arrives = turn == 0u || turn >= first_visits();
     bool goes_on = !arrives || follow(path, hit.t >= 0.0, hit, terms);
     if (goes_on) {
-        uint left = parameters.first_shadow_rays - turn;
+        uint left = first_visits() - turn;
         goes_on = visit(path, hit, arrives, left, terms, pending);
     }
     count_rays(pixel, uvec2(arrives, pending.ray.t_max > 0.0));
