@@ -2,15 +2,16 @@
 //
 //   radiance = before + attenuation * (diffuse_direct + diffuse_indirect) + specular_direct + specular_indirect
 //
-// The filter vertex is the first one with a diffuse lobe (with hpsf.glossy, or a glossy one: filter/hpsf/part.glsl), or, with hpsf.vertex, the second or third: final gathering (Binder, figure 10), in
-// which `before` holds what the vertices in front of it send themselves. Measured on cornell, 16 paths per pixel: filtering at the second
-// vertex leaves 1/1.7 of the variance of indirect light, 1/2.1 where cells are filled before; the rest is the choice of the first vertex'
-// direction, so that the paper's "dramatically" does not hold here. Of the whole picture (128x72), relMSE is 0.0027, 0.0043 without a filter,
-// and on the hall 0.066, 0.070.
+// The filter vertex is the first one with a diffuse lobe (with hpsf.glossy, or a glossy one: filter/hpsf/part.glsl), or, with hpsf.vertex,
+// the second or third: final gathering (Binder, figure 10), in which `before` holds what the vertices in front of it send themselves.
+// Measured on cornell, 16 paths per pixel: filtering at the second vertex leaves 1/1.7 of the variance of indirect light, 1/2.1 where cells are
+// filled before; the rest is the choice of the first vertex' direction, so that the paper's "dramatically" does not hold here. Of the whole
+// picture (128x72), relMSE is 0.0027, 0.0043 without a filter, and on the hall 0.066, 0.070.
 //
-// `before`: emitted or scattered in front of it. `attenuation`: throughput up to it times its diffuse albedo, which is multiplied in nowhere else and divided out nowhere. The diffuse terms: what its diffuse lobe
-// receives, direct light and the rest apart, as if its albedo were 1. The specular terms: what its other lobes send on, throughput
-// up to it included.
+// `before`: emitted or scattered in front of it; and, with lights.sole, what the sole light sends to the first vertex, which has no noise to be
+// filtered. `attenuation`: throughput up to it times its diffuse albedo, which is multiplied in nowhere else and divided out nowhere. The
+// diffuse terms: what its diffuse lobe receives, direct light and the rest apart, as if its albedo were 1. The specular terms: what its other
+// lobes send on, throughput up to it included.
 //
 // Deviations and why: the algorithm stores one attenuation for diffuse and specular (attenIF) and one radiance after it. Here a
 // direction that both lobes could have sampled carries a weight for each, so the sum is the plain path tracer's for every material,
