@@ -6,7 +6,7 @@
 // them, no launch waits for them, and both traces of a path are the same instructions, without which bits would differ.
 //
 // A retraced path begins at the last frame's camera, not at its filter vertex: that costs one more ray, and nothing has to be kept but
-// 28 bytes, where a vertex would take its hit, view direction, footprint, throughput and attenuation; mirrors and glass in front of it are
+// 32 bytes, where a vertex would take its hit, view direction, footprint, throughput and attenuation; mirrors and glass in front of it are
 // looked through again. The camera may move: what has changed is a property of the place, whoever sees it.
 #define SEPARATE_TERMS
 #define SHARED_JITTER
@@ -42,7 +42,8 @@ Kept kept_path(Terms terms, Ray from_camera, Camera camera) {
     vec3 diffuse = stored(received(terms.diffuse_direct, terms.attenuation)) + stored(received(terms.diffuse_indirect, terms.attenuation));
     vec3 specular = terms.vertex.layer == 0u ? vec3(0.0) : stored(terms.specular_direct) + stored(terms.specular_indirect);
     float distance = view_plane_distance(from_camera, camera, terms.vertex.travelled);
-    return all_finite(diffuse + specular) ? Kept(diffuse, distance, specular) : Kept(vec3(0.0), 0.0, vec3(0.0));
+    uint unfiltered = pcg3d(floatBitsToUint(terms.before)).x;
+    return all_finite(diffuse + specular) ? Kept(diffuse, distance, specular, unfiltered) : Kept(vec3(0.0), 0.0, vec3(0.0), 0u);
 }
 
 void write_retraced(uvec2 square, Terms terms, uvec2 counts) {

@@ -18,8 +18,8 @@ const TILES: u32 = 201;
 const RETRACING_GROUP: u32 = 203;
 
 /// Bytes of a path that is kept for the next frame, and of one that is retraced.
-const KEPT: u64 = 28;
-const RETRACED: u64 = 52;
+const KEPT: u64 = 32;
+const RETRACED: u64 = 56;
 
 /// Bytes (shaders_glsl/paths/end.glsl).
 const END: u64 = 48;
@@ -85,8 +85,8 @@ pub struct Retraced {
     pub now: BufferHandle,
 }
 
-/// The same, and once more one of the last frame's paths for each square of `side` pixels a side: 80 bytes and up to 2 (bounces + 1) + 1 rays
-/// for each. History: those of this frame that the next one will retrace, 28 bytes each. Also returns `retraced_ray_count`, in its first pixels.
+/// The same, and once more one of the last frame's paths for each square of `side` pixels a side: 88 bytes and up to 2 (bounces + 1) + 1 rays
+/// for each. History: those of this frame that the next one will retrace, 32 bytes each. Also returns `retraced_ray_count`, in its first pixels.
 pub fn add_with_retraced(frame: &mut FrameBuilder, side: u32) -> Result<(Terms, Retraced), GpuError> {
     let terms = Terms::new(frame)?;
     let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;

@@ -127,6 +127,29 @@ fn the_hybrid_has_nine_tenths_of_a_step_of_a_highlight_within_four_frames() {
     }
 }
 
+/// Also where the light is the only one without a size, whose light goes past the cells and only the antialiasing of hpsf+ remembers it.
+#[test]
+fn the_picture_of_hpsf_plus_has_nine_tenths_of_a_step_of_the_light_within_four_frames() {
+    let gpu = common::gpu();
+    let high = DVec3::new(0.0, 4.0, 0.0);
+    for kind in [LightKind::Sphere { radius: 0.01 }, LightKind::Point] {
+        let (mut scene, light) = lit_floor(high);
+        scene.lights[0].kind = kind;
+        scene.animation = moving(light, vec![high, DVec3::new(0.0, 3.0, 0.0)], Interpolation::Step);
+        let mut settings = with(&[]);
+        settings.view = from_above(0.5);
+        let mut renderer = render_frames(&gpu, &scene, &settings, "hpsf+", STEP);
+        let before = mean(&renderer.picture().unwrap());
+        (0..4).for_each(|_| renderer.render_frame().unwrap());
+        let fourth = mean(&renderer.picture().unwrap());
+        renderer.restart(1, STEP + 1).unwrap();
+        renderer.render_frame().unwrap();
+        let after = mean(&renderer.picture().unwrap());
+        assert!(after > 1.5 * before, "{kind:?}: {before} {after}");
+        assert!((fourth - before) / (after - before) > 0.9, "{kind:?}: from {before} to {fourth}, not {after}");
+    }
+}
+
 /// A card that lies flat at `place`, from one x to the other, and as far along z either way; returns its node.
 fn add_card(scene: &mut Scene, [left, right]: [f32; 2], z: f32, place: DVec3) -> u32 {
     scene.meshes.push(Mesh {

@@ -25,7 +25,8 @@ vec3 radiance_of(Kept path) {
 }
 
 bool others_changed(Kept now, Kept before) {
-    return any(PART == PART_GLOSSY ? notEqual(now.diffuse, before.diffuse) : notEqual(now.specular, before.specular));
+    bool lobes = any(PART == PART_GLOSSY ? notEqual(now.diffuse, before.diffuse) : notEqual(now.specular, before.specular));
+    return lobes || now.unfiltered != before.unfiltered;
 }
 
 bool has_lobes(uint layer) {

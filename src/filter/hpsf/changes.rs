@@ -4,7 +4,7 @@
 //! claim to know. Puts out `hpsf_change` (`hpsf_change_indirect`, `specular_change`), the relative change in each pixel's cells. No history
 //! of its own.
 //!
-//! changes, once for the tables of direct and of indirect light: 80 bytes read per retraced path, and 64 updated for each of the filter's levels
+//! changes, once for the tables of direct and of indirect light: 88 bytes read per retraced path, and 64 updated for each of the filter's levels
 //! and two more, of a table of 64 bytes for each of four more, which is cleared before. forget: 24 bytes read (of glossy lobes 28) and 4 written per
 //! pixel, and per level 64 read and, where there is change, 20 updated for each lookup.
 //!
