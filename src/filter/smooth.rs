@@ -1,7 +1,7 @@
 //! An edge-avoiding a-trous filter over the screen, guided by variance: shaders_glsl/filter/smooth/, Dammertz et al. 2010, Schied et al. 2017.
 //!
-//! Takes part of the light and the filter vertices; returns it smoothed, after passes whose taps are 1, 2, 4, ... pixels apart. No history.
-//! A pass reads 40 bytes per pixel (its other taps come from caches) and writes 16, 32 and 8 at fp16.
+//! Takes up to three parts of the light and the filter vertices; returns them smoothed, after passes whose taps are 1, 2, 4, ... pixels apart.
+//! No history. A pass reads 20 bytes per pixel (its other taps come from caches), and for each part 20 more, and writes 16, 12 and 8 at fp16.
 
 use crate::display::temporal::Known;
 use crate::frame::{FrameBuilder, ImageHandle};
@@ -9,9 +9,19 @@ use crate::gpu::{GpuError, vk};
 use crate::paths::gbuffer::GBuffer;
 use crate::paths::terms::{FilterVertex, Terms};
 
-/// Specialization constants: pixels between taps, and whether few samples are taken to be noisier than they seem.
+/// Specialization constants: pixels between taps, and layers whose few samples are taken to be noisier than they seem.
 const STEP: u32 = 224;
 const BLIND: u32 = 233;
+
+/// Passes at most, each with taps twice as far apart as the one before.
+const PASSES: [&str; 5] = ["smooth 1", "smooth 2", "smooth 3", "smooth 4", "smooth 5"];
+/// One for each number of layers.
+const STEMS: [&str; MOST_LAYERS] = ["filter/smooth/step_1", "filter/smooth/step_2", "filter/smooth/step_3"];
+const MOST_LAYERS: usize = 3;
+/// What a kernel calls the images of each of its layers.
+const NOISY: [&str; MOST_LAYERS] = ["noisy_0", "noisy_1", "noisy_2"];
+const SAMPLES: [&str; MOST_LAYERS] = ["samples_0", "samples_1", "samples_2"];
+const SMOOTHED: [&str; MOST_LAYERS] = ["smoothed_0", "smoothed_1", "smoothed_2"];
 
 /// How often, and how many of these are blind. Direct light has edges soon; what fewer samples find takes more of them to be known by.
 #[derive(Debug, Clone, Copy)]
@@ -27,50 +37,61 @@ pub struct Noisy {
     pub samples: ImageHandle,
 }
 
-/// What is smoothed.
-pub struct Layer {
-    passes: [&'static str; 5],
+/// Names of what becomes of a part of the light.
+#[derive(Debug, Clone, Copy)]
+pub struct Names {
     smoothed: &'static str,
     halfway: &'static str,
 }
 
-pub const DIFFUSE: Layer =
-    Layer { passes: ["smooth 1", "smooth 2", "smooth 3", "smooth 4", "smooth 5"], smoothed: "smoothed", halfway: "smoothed_halfway" };
+pub const DIFFUSE: Names = Names { smoothed: "smoothed", halfway: "smoothed_halfway" };
+pub const DIRECT: Names = Names { smoothed: "smoothed_direct", halfway: "smoothed_direct_halfway" };
+pub const INDIRECT: Names = Names { smoothed: "smoothed_indirect", halfway: "smoothed_indirect_halfway" };
+pub const SPECULAR: Names = Names { smoothed: "smoothed_specular", halfway: "smoothed_specular_halfway" };
 
-pub const DIRECT: Layer = Layer {
-    passes: ["smooth direct 1", "smooth direct 2", "smooth direct 3", "smooth direct 4", "smooth direct 5"],
-    smoothed: "smoothed_direct",
-    halfway: "smoothed_direct_halfway",
-};
+/// A part of the light that is smoothed apart from others.
+#[derive(Debug, Clone, Copy)]
+pub struct Layer {
+    pub noisy: Noisy,
+    pub names: Names,
+    pub passes: Passes,
+}
 
-pub const INDIRECT: Layer = Layer {
-    passes: ["smooth indirect 1", "smooth indirect 2", "smooth indirect 3", "smooth indirect 4", "smooth indirect 5"],
-    smoothed: "smoothed_indirect",
-    halfway: "smoothed_indirect_halfway",
-};
-
-pub const SPECULAR: Layer = Layer {
-    passes: ["smooth specular 1", "smooth specular 2", "smooth specular 3", "smooth specular 4", "smooth specular 5"],
-    smoothed: "smoothed_specular",
-    halfway: "smoothed_specular_halfway",
-};
-
-pub fn add(frame: &mut FrameBuilder, vertex: &FilterVertex, noisy: Noisy, layer: &Layer, passes: Passes) -> Result<ImageHandle, GpuError> {
-    if passes.count == 0 {
-        return Ok(noisy.mean);
+/// Smooths each layer as often as it wants, side by side, and puts what comes out in place of its mean.
+pub fn add(frame: &mut FrameBuilder, vertex: &FilterVertex, mut layers: [Option<&mut Layer>; MOST_LAYERS]) -> Result<(), GpuError> {
+    let mut targets = [None; MOST_LAYERS];
+    for (targets, layer) in targets.iter_mut().zip(&layers) {
+        *targets = layer.as_ref().map(|layer| layer.targets(frame)).transpose()?;
     }
-    let smoothed = frame.color_image(layer.smoothed)?;
-    let between = if passes.count > 1 { frame.color_image(layer.halfway)? } else { smoothed };
-    let mut source = noisy.mean;
-    for (i, name) in layer.passes.into_iter().enumerate().take(passes.count) {
-        // They take turns, and the last one writes `smoothed`.
-        let target = if (passes.count - i) % 2 == 1 { smoothed } else { between };
-        let pass = frame.pass(name, "filter/smooth/step").constant(STEP, 1 << i).constant(BLIND, (i < passes.blind).into());
-        let pass = pass.reads("noisy", source).reads("samples", noisy.samples).writes("smoothed", target);
-        pass.reads("filter_position", vertex.position).reads("filter_normal", vertex.normal).add()?;
-        source = target;
+    for (i, name) in PASSES.into_iter().enumerate() {
+        let goes_on = |layer: &Layer| layer.passes.count > i;
+        let count = layers.iter().flatten().filter(|layer| goes_on(layer)).count();
+        if count == 0 {
+            break;
+        }
+        let mut pass = frame.pass(name, STEMS[count - 1]).constant(STEP, 1 << i);
+        let mut blind = 0;
+        let going_on = layers.iter_mut().flatten().zip(targets.into_iter().flatten()).filter(|(layer, _)| goes_on(layer));
+        for (place, (layer, targets)) in going_on.enumerate() {
+            // They take turns, and the last pass writes the first one.
+            let target = targets[(layer.passes.count - i + 1) % 2];
+            pass = pass.reads(NOISY[place], layer.noisy.mean).reads(SAMPLES[place], layer.noisy.samples).writes(SMOOTHED[place], target);
+            blind |= u32::from(i < layer.passes.blind) << place;
+            layer.noisy.mean = target;
+        }
+        pass.constant(BLIND, blind).reads("filter_position", vertex.position).reads("filter_normal", vertex.normal).add()?;
     }
-    Ok(smoothed)
+    Ok(())
+}
+
+impl Layer {
+    /// Images that passes write by turns.
+    fn targets(&self, frame: &mut FrameBuilder) -> Result<[ImageHandle; 2], GpuError> {
+        let image = |frame: &mut FrameBuilder, passes, name| {
+            if self.passes.count >= passes { frame.color_image(name) } else { Ok(self.noisy.mean) }
+        };
+        Ok([image(frame, 1, self.names.smoothed)?, image(frame, 2, self.names.halfway)?])
+    }
 }
 
 /// Both specular terms in one image, as noisy as they will be in a mean over frames where there is `history`.

@@ -3,7 +3,7 @@
 use super::{PassOptions, Technique, nhpsf};
 use crate::display::temporal::{Changes, Known};
 use crate::display::{composite, temporal};
-use crate::filter::hpsf::{self, Options, Part, Paths, Table};
+use crate::filter::hpsf::{self, Filtered, Options, Part, Paths, Table};
 use crate::filter::smooth::{self, Layer, Passes};
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
@@ -53,9 +53,14 @@ pub(super) fn passes_of(
     let indirect = further_table(splits, Part::Indirect)?;
     let glossy = further_table(options.parameters.number("hpsf.glossy") == 1.0, Part::Glossy)?;
     let paths = add_paths(frame, &table)?;
-    let (diffuse, change) = filter_diffuse(frame, &table, indirect.as_ref(), &paths, options)?;
-    let specular = filter_specular(frame, glossy.as_ref(), &paths, history.as_ref(), options)?;
-    let radiance = composite::add_parts(frame, &paths.terms, diffuse, specular)?;
+    let (mut diffuse, mut indirect, change) = filter_diffuse(frame, &table, indirect.as_ref(), &paths, options)?;
+    let mut specular = filter_specular(frame, glossy.as_ref(), &paths, history.as_ref(), options)?;
+    let terms = &paths.terms;
+    smooth::add(frame, &terms.vertex, [Some(&mut diffuse), indirect.as_mut(), specular.as_mut()])?;
+    let mean = |layer: Layer| layer.noisy.mean;
+    let diffuse = [mean(diffuse), mean(indirect.unwrap_or(diffuse))];
+    let specular = specular.map_or([terms.specular_direct, terms.specular_indirect], |both| [mean(both); 2]);
+    let radiance = composite::add_parts(frame, terms, diffuse, specular)?;
     match history {
         Some((gbuffer, known)) => {
             let changes = change.map(|change| Changes { change, vertices: paths.terms.vertex.position });
@@ -92,48 +97,41 @@ fn add_paths_to_second_vertices(frame: &mut FrameBuilder, options: PassOptions, 
     Ok(terms)
 }
 
-/// Direct and indirect light, or twice their sum; and where it changes.
+/// Direct and indirect light, or their sum alone; and where it changes.
 fn filter_diffuse(
     frame: &mut FrameBuilder,
     table: &Table,
     indirect: Option<&Table>,
     paths: &Paths,
     options: PassOptions,
-) -> Result<([ImageHandle; 2], Option<ImageHandle>), GpuError> {
+) -> Result<(Layer, Option<Layer>, Option<ImageHandle>), GpuError> {
     let changes = table.changes(frame, paths)?;
-    let mut smoothed = |table: &Table, layer: &Layer, key| {
-        let filtered = table.filter(frame, paths, changes)?;
-        let smoothed = smooth::add(frame, &paths.terms.vertex, filtered.noisy, layer, smoothing(options, key))?;
-        Ok((smoothed, filtered.change))
-    };
-    match indirect {
-        None => smoothed(table, &smooth::DIFFUSE, "hpsf.smooth").map(|(both, change)| ([both; 2], change)),
-        Some(indirect) => {
-            let (direct, change) = smoothed(table, &smooth::DIRECT, "hpsf.smooth")?;
-            let (indirect, _) = smoothed(indirect, &smooth::INDIRECT, "hpsf.smooth_indirect")?;
-            Ok(([direct, indirect], change))
-        }
-    }
+    let Filtered { noisy, change } = table.filter(frame, paths, changes)?;
+    let layer = |noisy, names, key| Layer { noisy, names, passes: smoothing(options, key) };
+    let Some(indirect) = indirect else { return Ok((layer(noisy, smooth::DIFFUSE, "hpsf.smooth"), None, change)) };
+    let direct = layer(noisy, smooth::DIRECT, "hpsf.smooth");
+    let noisy = indirect.filter(frame, paths, changes)?.noisy;
+    Ok((direct, Some(layer(noisy, smooth::INDIRECT, "hpsf.smooth_indirect")), change))
 }
 
-/// What other lobes reflect, likewise.
+/// What other lobes reflect, likewise; none where the path's own terms stay as they are.
 fn filter_specular(
     frame: &mut FrameBuilder,
     glossy: Option<&Table>,
     paths: &Paths,
     history: Option<&(GBuffer, Known)>,
     options: PassOptions,
-) -> Result<[ImageHandle; 2], GpuError> {
-    let (terms, passes) = (&paths.terms, smoothing(options, "hpsf.smooth_specular"));
+) -> Result<Option<Layer>, GpuError> {
+    let passes = smoothing(options, "hpsf.smooth_specular");
     let noisy = match glossy {
         Some(table) => {
             let changes = table.changes(frame, paths)?;
             table.filter(frame, &Paths { behind: None, chains: None, ..*paths }, changes)?.noisy
         }
-        None if passes.count == 0 => return Ok([terms.specular_direct, terms.specular_indirect]),
-        None => smooth::add_specular(frame, terms, history)?,
+        None if passes.count == 0 => return Ok(None),
+        None => smooth::add_specular(frame, &paths.terms, history)?,
     };
-    Ok([smooth::add(frame, &terms.vertex, noisy, &smooth::SPECULAR, passes)?; 2])
+    Ok(Some(Layer { noisy, names: smooth::SPECULAR, passes }))
 }
 
 fn smoothing(options: PassOptions, key: &str) -> Passes {

@@ -24,7 +24,7 @@ fn error_over_unfiltered(frames: u32) -> [f64; 2] {
     [filtered[0] / noisy[0], filtered[1] / noisy[1]]
 }
 
-/// Measured: FLIP 0.57, relMSE 0.05; with means in place of planes (filter/smooth/step.comp) 0.66 and 0.05. At 256x144, where less of the error is
+/// Measured: FLIP 0.57, relMSE 0.05; with means in place of planes (filter/smooth/step.glsl) 0.66 and 0.05. At 256x144, where less of the error is
 /// aliasing, FLIP is 0.45.
 #[test]
 fn one_frame_of_hpsf_plus_has_little_of_the_noise() {

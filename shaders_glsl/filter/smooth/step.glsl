@@ -18,6 +18,8 @@
 // Two pixels are as similar one way as the other: the larger of their variances counts. By the centre's alone, as in the paper, a bright
 // sample takes in its dark surroundings and they do not take it in, and 5 % of Sponza's light is lost in one frame.
 //
+// Layers that are apart, up to LAYERS of them, are smoothed side by side: they share the taps' places, normals and weights by these.
+//
 // Deviations and why: colours count, not luminances alone, or what walls lend each other is lost. Positions count by the distance from the
 // tangent plane, so that a floor seen at a flat angle is smoothed like a wall.
 // All weights are polynomials and need no exponential. The variance is not filtered by squared weights alone: each pixel's
@@ -34,17 +36,71 @@ layout(local_size_x = 8, local_size_y = 4) in;
 
 /// Pixels between taps.
 layout(constant_id = 224) const int STEP = 1;
-/// Few samples do not tell how noisy they are.
-layout(constant_id = 233) const bool BLIND = false;
+/// Layers whose few samples do not tell how noisy they are, a bit each.
+layout(constant_id = 233) const uint BLIND = 0;
 
-/// w: variance, the mean of the channels'; below 0 where nothing is known.
-layout(set = 1, binding = 0, COLOR_FORMAT) readonly uniform image2D noisy;
 /// w: view-plane distance; 0 where there is no filter vertex.
-layout(set = 1, binding = 1, rgba32f) readonly uniform image2D filter_position;
-layout(set = 1, binding = 2, r32ui) readonly uniform uimage2D filter_normal;
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D filter_position;
+layout(set = 1, binding = 1, r32ui) readonly uniform uimage2D filter_normal;
+/// w: variance, the mean of the channels'; below 0 where nothing is known.
+layout(set = 1, binding = 2, COLOR_FORMAT) readonly uniform image2D noisy_0;
 /// Samples that the noisy value is the mean of.
-layout(set = 1, binding = 3, r32ui) readonly uniform uimage2D samples;
-layout(set = 1, binding = 4, COLOR_FORMAT) writeonly uniform image2D smoothed;
+layout(set = 1, binding = 3, r32ui) readonly uniform uimage2D samples_0;
+layout(set = 1, binding = 4, COLOR_FORMAT) writeonly uniform image2D smoothed_0;
+#if LAYERS > 1
+layout(set = 1, binding = 5, COLOR_FORMAT) readonly uniform image2D noisy_1;
+layout(set = 1, binding = 6, r32ui) readonly uniform uimage2D samples_1;
+layout(set = 1, binding = 7, COLOR_FORMAT) writeonly uniform image2D smoothed_1;
+#endif
+#if LAYERS > 2
+layout(set = 1, binding = 8, COLOR_FORMAT) readonly uniform image2D noisy_2;
+layout(set = 1, binding = 9, r32ui) readonly uniform uimage2D samples_2;
+layout(set = 1, binding = 10, COLOR_FORMAT) writeonly uniform image2D smoothed_2;
+#endif
+
+vec4 noisy_at(int layer, ivec2 pixel) {
+#if LAYERS > 2
+    if (layer == 2) {
+        return imageLoad(noisy_2, pixel);
+    }
+#endif
+#if LAYERS > 1
+    if (layer == 1) {
+        return imageLoad(noisy_1, pixel);
+    }
+#endif
+    return imageLoad(noisy_0, pixel);
+}
+
+uint samples_at(int layer, ivec2 pixel) {
+#if LAYERS > 2
+    if (layer == 2) {
+        return imageLoad(samples_2, pixel).x;
+    }
+#endif
+#if LAYERS > 1
+    if (layer == 1) {
+        return imageLoad(samples_1, pixel).x;
+    }
+#endif
+    return imageLoad(samples_0, pixel).x;
+}
+
+void store(int layer, ivec2 pixel, vec4 value) {
+#if LAYERS > 2
+    if (layer == 2) {
+        imageStore(smoothed_2, pixel, value);
+        return;
+    }
+#endif
+#if LAYERS > 1
+    if (layer == 1) {
+        imageStore(smoothed_1, pixel, value);
+        return;
+    }
+#endif
+    imageStore(smoothed_0, pixel, value);
+}
 
 /// By colour, too.
 const bool GUIDED = STEP > 1;
@@ -97,10 +153,51 @@ vec4 fitted(Taps taps, out float left) {
     return vec4(max(mean.rgb - share * trend, vec3(0.0)), mean.w);
 }
 
-/// In standard deviations, squared. Later steps have their variance from the more neighbours, and are the less blind.
-float noise_at(ivec2 pixel) {
-    float few = BLIND ? parameters.hpsf_smooth_few * 4.0 / (float(STEP * STEP) * float(max(imageLoad(samples, pixel).x, 1u))) : 0.0;
+/// A layer at a pixel, and around it.
+struct Layer {
+    vec4 own;
+    /// In standard deviations, squared.
+    float noise;
+    float rounding;
+    Taps taps;
+};
+
+/// Later steps have their variance from the more neighbours, and are the less blind.
+float noise_at(int layer, ivec2 pixel) {
+    bool blind = (BLIND >> layer & 1u) != 0u;
+    float few = blind ? parameters.hpsf_smooth_few * 4.0 / (float(STEP * STEP) * float(max(samples_at(layer, pixel), 1u))) : 0.0;
     return parameters.hpsf_smooth_noise * parameters.hpsf_smooth_noise * (1.0 + few * few);
+}
+
+Layer layer_at(int layer, ivec2 pixel) {
+    vec4 own = noisy_at(layer, pixel);
+    Taps none = Taps(0.0, 0.0, vec4(0.0), vec3(0.0), vec3(0.0), vec2(0.0), vec3(0.0));
+    return Layer(own, noise_at(layer, pixel), ROUNDING * mean_square(own.rgb) + LEAST, none);
+}
+
+/// `similar`: how much the tap's surface has to do with the pixel's; `share`: the spline's.
+void weigh_tap(inout Layer layer, float similar, float share, vec2 tap, vec4 value) {
+    float weight = similar;
+    if (GUIDED && layer.own.w >= 0.0) {
+        float noise = layer.noise * max(layer.own.w, value.w) + layer.rounding;
+        weight *= max(1.0 - mean_square(value.rgb - layer.own.rgb) / noise, 0.0);
+    }
+    weight *= value.w >= 0.0 ? share : 0.0;
+    add_tap(layer.taps, weight, tap, value);
+}
+
+vec4 smoothed(Layer layer) {
+    if (!(layer.taps.weights > 0.0)) {
+        return layer.own;
+    }
+    float left;
+    vec4 mean = fitted(layer.taps, left);
+    if (!GUIDED && layer.own.w >= 0.0) {
+        float noise = layer.noise * max(mean.w, layer.own.w) + layer.rounding;
+        float explained = noise / max(mean_square(mean.rgb - layer.own.rgb), LEAST);
+        mean.rgb = mix(layer.own.rgb, mean.rgb, min(explained, 1.0));
+    }
+    return storable(vec4(mean.rgb, mean.w * (STEP == 1 ? left : sqrt(left))));
 }
 
 void main() {
@@ -110,17 +207,19 @@ void main() {
         return;
     }
     vec4 centre = imageLoad(filter_position, pixel);
-    vec4 own = imageLoad(noisy, pixel);
     if (!(centre.w > 0.0)) {
-        imageStore(smoothed, pixel, own);
+        for (int i = 0; i < LAYERS; i++) {
+            store(i, pixel, noisy_at(i, pixel));
+        }
         return;
     }
     vec3 normal = unpack_normal(imageLoad(filter_normal, pixel).x);
     float reach = parameters.hpsf_smooth_reach * float(STEP) * pixel_footprint(centre.w);
     float least_cosine = cos(radians(parameters.hpsf_smooth_angle));
-    float rounding = ROUNDING * mean_square(own.rgb) + LEAST;
-    float noise = noise_at(pixel);
-    Taps taps = Taps(0.0, 0.0, vec4(0.0), vec3(0.0), vec3(0.0), vec2(0.0), vec3(0.0));
+    Layer layers[LAYERS];
+    for (int i = 0; i < LAYERS; i++) {
+        layers[i] = layer_at(i, pixel);
+    }
     for (int i = 0; i < 25; i++) {
         ivec2 tap = ivec2(i % 5, i / 5) - 2;
         ivec2 other = pixel + tap * STEP;
@@ -128,24 +227,14 @@ void main() {
             continue;
         }
         vec4 position = imageLoad(filter_position, other);
-        vec4 value = imageLoad(noisy, other);
-        float weight = alignment(unpack_normal(imageLoad(filter_normal, other).x), normal, least_cosine);
-        weight *= max(1.0 - abs(dot(position.xyz - centre.xyz, normal)) / reach, 0.0);
-        if (GUIDED && own.w >= 0.0) {
-            weight *= max(1.0 - mean_square(value.rgb - own.rgb) / (noise * max(own.w, value.w) + rounding), 0.0);
+        float similar = alignment(unpack_normal(imageLoad(filter_normal, other).x), normal, least_cosine);
+        similar *= max(1.0 - abs(dot(position.xyz - centre.xyz, normal)) / reach, 0.0);
+        float share = position.w > 0.0 ? SPLINE[abs(tap.x)] * SPLINE[abs(tap.y)] : 0.0;
+        for (int j = 0; j < LAYERS; j++) {
+            weigh_tap(layers[j], similar, share, vec2(tap), noisy_at(j, other));
         }
-        weight *= position.w > 0.0 && value.w >= 0.0 ? SPLINE[abs(tap.x)] * SPLINE[abs(tap.y)] : 0.0;
-        add_tap(taps, weight, vec2(tap), value);
     }
-    if (!(taps.weights > 0.0)) {
-        imageStore(smoothed, pixel, own);
-        return;
+    for (int i = 0; i < LAYERS; i++) {
+        store(i, pixel, smoothed(layers[i]));
     }
-    float left;
-    vec4 mean = fitted(taps, left);
-    if (!GUIDED && own.w >= 0.0) {
-        float explained = (noise * max(mean.w, own.w) + rounding) / max(mean_square(mean.rgb - own.rgb), LEAST);
-        mean.rgb = mix(own.rgb, mean.rgb, min(explained, 1.0));
-    }
-    imageStore(smoothed, pixel, storable(vec4(mean.rgb, mean.w * (STEP == 1 ? left : sqrt(left)))));
 }

@@ -1,0 +1,3 @@
+// Two layers: filter/smooth/step.glsl.
+#define LAYERS 2
+#include "filter/smooth/step.glsl"

@@ -1,0 +1,3 @@
+// Three layers: filter/smooth/step.glsl.
+#define LAYERS 3
+#include "filter/smooth/step.glsl"
