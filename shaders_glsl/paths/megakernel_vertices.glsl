@@ -3,26 +3,30 @@
 #define SHARED_JITTER
 #define VERTEX_LIST
 #include "paths/megakernel.glsl"
+#include "paths/terms_output.glsl"
 #include "paths/vertices_output.glsl"
-#include "filter/nhpsf/known.glsl"
+#include "filter/nhpsf/list_end.glsl"
 
 layout(local_size_x = 32) in;
 
-const uint UNKNOWN_DARK = 1u;
+/// Length of the pixel's list.
+layout(set = 1, binding = 23, r32ui) writeonly uniform uimage2D path_vertices;
+layout(set = 1, binding = 26, scalar) writeonly buffer VertexLight { ReceivedLight at[]; } vertex_light;
 
-bool is_known(uint pixel, uint index, FilterVertex vertex) {
-    if (NHPSF_UNKNOWN == UNKNOWN_DARK) {
-        return true;
-    }
-    uvec2 at = uvec2(pixel % frame.extent.x, pixel / frame.extent.x);
-    float distance = view_plane_distance(primary_ray(at, frame.jitter), frame.camera, vertex.travelled);
-    FilterPoint point = vertex_point(at, vec4(vertex.position, distance), pack_normal(vertex.normal), pack_normal(vertex.incident));
-    return known_at(point, vertex_numbers(at, index)).count > 0u;
+void keep_vertex(uint pixel, uint index, FilterVertex vertex, vec3 attenuation) {
+    store_place(pixel, index, vertex, attenuation);
+    vertex_light.at[place_in_list(pixel, index)].incident = pack_normal(vertex.incident);
+}
+
+void keep_light(uint pixel, uint index, vec3 radiance) {
+    vertex_light.at[place_in_list(pixel, index)].radiance = radiance;
 }
 
 void write_pixel(uvec2 pixel, Terms terms, uint samples, uvec2 counts) {
     write_terms_and_rays(pixel, terms, counts);
-    write_list(pixel, terms);
+    finish_vertex(pixel.y * frame.extent.x + pixel.x, terms);
+    imageStore(specular_attenuation, ivec2(pixel), finite_or_black(terms.specular_attenuation));
+    imageStore(path_vertices, ivec2(pixel), uvec4(terms.vertices));
 }
 
 void main() {

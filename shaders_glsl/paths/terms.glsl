@@ -36,17 +36,6 @@ struct FilterVertex {
     uint layer;
 };
 
-#ifdef VERTEX_LIST
-/// A filter vertex behind the first one: paths/vertices.glsl.
-struct PathVertex {
-    FilterVertex at;
-    /// What becomes of its diffuse lobe's radiance on the way to the one of the vertex before.
-    vec3 attenuation;
-    /// What its diffuse lobe receives, but for what comes through the next vertex of the list.
-    vec3 radiance;
-};
-#endif
-
 struct Terms {
     vec3 before;
     vec3 attenuation;
@@ -56,9 +45,10 @@ struct Terms {
     vec3 specular_indirect;
     FilterVertex vertex;
 #ifdef VERTEX_LIST
-    /// Vertices of the path's list so far, and the last one of them.
+    /// Vertices of the path's list so far (paths/vertices.glsl).
     uint vertices;
-    PathVertex behind;
+    /// What the last one's diffuse lobe receives, but for what comes through the next one.
+    vec3 behind;
     /// Of the first one's radiance on the way to `specular_indirect`.
     vec3 specular_attenuation;
 #endif
@@ -74,8 +64,7 @@ const uint TERM_BEHIND = 3u;
 Terms no_terms() {
     FilterVertex none = FilterVertex(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 0u);
 #ifdef VERTEX_LIST
-    PathVertex nothing = PathVertex(none, vec3(0.0), vec3(0.0));
-    return Terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), none, 0u, nothing, vec3(0.0));
+    return Terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), none, 0u, vec3(0.0), vec3(0.0));
 #else
     return Terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), none);
 #endif
@@ -85,7 +74,7 @@ Terms no_terms() {
 void add_term(inout Terms terms, uint term, float diffuse_weight, vec3 specular_weight, vec3 radiance) {
 #ifdef VERTEX_LIST
     if (term == TERM_BEHIND) {
-        terms.behind.radiance += diffuse_weight * radiance;
+        terms.behind += diffuse_weight * radiance;
         return;
     }
 #endif

@@ -28,17 +28,21 @@ layout(constant_id = 204) const uint MOST_VERTICES = 1;
 /// The last vertex of such a list is there to be looked up: no light is looked for at it.
 layout(constant_id = 205) const bool LAST_IS_READ = true;
 
-/// Stores vertex `index` of a pixel's list. Defined by the kernel.
-void keep_vertex(uint pixel, uint index, PathVertex vertex);
+/// Stores vertex `index` of a pixel's list, that has received nothing so far. `attenuation`: what becomes of its diffuse lobe's radiance on the
+/// way to the one of the vertex before. Defined by the kernel.
+void keep_vertex(uint pixel, uint index, FilterVertex vertex, vec3 attenuation);
+
+/// Takes what a stored vertex has received, for all of its path, or for one step of it where the kernel makes no more. Defined by the kernel.
+void keep_light(uint pixel, uint index, vec3 radiance);
 
 /// Whether a list may end with this vertex, as there is something to be read for it. Else the path goes on, and brings its vertex before what
 /// it finds, until it comes to one that is known or is as long as any. Defined by the kernel.
 bool is_known(uint pixel, uint index, FilterVertex vertex);
 
-/// Stores what has been found at the list's last vertex.
+/// Leaves what has been found at the list's last vertex to the kernel.
 void finish_vertex(uint pixel, Terms terms) {
     if (terms.vertices > 0u) {
-        keep_vertex(pixel, terms.vertices - 1u, terms.behind);
+        keep_light(pixel, terms.vertices - 1u, terms.behind);
     }
 }
 
@@ -48,8 +52,9 @@ void begin_vertex(uint pixel, FilterVertex at, vec3 throughput, float diffuse_we
     if (terms.vertices == 0u) {
         terms.specular_attenuation = specular_weight * throughput;
     }
+    keep_vertex(pixel, terms.vertices, at, diffuse_weight * throughput);
     terms.vertices++;
-    terms.behind = PathVertex(at, diffuse_weight * throughput, vec3(0.0));
+    terms.behind = vec3(0.0);
 }
 
 uint vertices_behind(Terms terms) {

@@ -8,7 +8,7 @@
 
 use super::terms::Terms;
 use super::tiles;
-use super::vertices::{ListOptions, PathEnds, PathVertices};
+use super::vertices::{ListOptions, LooksUp, PathEnds, PathVertices};
 use crate::frame::{BufferHandle, FrameBuilder, ImageHandle, PassBuilder};
 use crate::gpu::{DeviceKind, GpuError, vk};
 
@@ -60,18 +60,14 @@ pub fn add_with_terms(frame: &mut FrameBuilder) -> Result<Terms, GpuError> {
     Ok(terms)
 }
 
-/// As [`add_with_terms`], with the vertices of the path behind its filter vertex: 48 bytes for each, and 20 for each pixel. `known` declares where the
-/// kernel looks up whether a list may end.
-pub fn add_with_vertices(
-    frame: &mut FrameBuilder,
-    options: ListOptions,
-    known: impl for<'b, 'a> FnOnce(PassBuilder<'b, 'a>) -> PassBuilder<'b, 'a>,
-) -> Result<(Terms, PathVertices), GpuError> {
+/// As [`add_with_terms`], with the vertices of the path behind its filter vertex: 48 bytes for each, and 20 for each pixel.
+pub fn add_with_vertices(frame: &mut FrameBuilder, options: ListOptions, known: &LooksUp) -> Result<(Terms, PathVertices), GpuError> {
     let terms = Terms::new(frame)?;
     let vertices = PathVertices::new(frame, options)?;
     let ray_count = frame.image("ray_count", vk::Format::R32_UINT)?;
+    let keys = u64::from(frame.pixels());
     let pass = terms.written_by(terms_pass(frame, "paths/megakernel_vertices", ray_count));
-    known(vertices.written_by(pass)).add()?;
+    known(vertices.written_by(pass), keys).add()?;
     Ok((terms, vertices))
 }
 
@@ -106,17 +102,14 @@ pub fn add_with_retraced(frame: &mut FrameBuilder, side: u32) -> Result<(Terms, 
 
 /// The same as [`add_with_vertices`], and where paths can be continued: 48 bytes a pixel (shaders_glsl/paths/end.glsl), where a list's last
 /// vertex is there to be looked up.
-pub fn add_with_ends(
-    frame: &mut FrameBuilder,
-    options: ListOptions,
-    known: impl for<'b, 'a> FnOnce(PassBuilder<'b, 'a>) -> PassBuilder<'b, 'a>,
-) -> Result<(Terms, PathVertices, PathEnds), GpuError> {
+pub fn add_with_ends(frame: &mut FrameBuilder, options: ListOptions, known: &LooksUp) -> Result<(Terms, PathVertices, PathEnds), GpuError> {
     let terms = Terms::new(frame)?;
     let vertices = PathVertices::new(frame, options)?;
-    let places = frame.buffer("ends of paths", END * u64::from(frame.pixels()))?;
+    let pixels = u64::from(frame.pixels());
+    let places = frame.buffer("ends of paths", END * pixels)?;
     let ends = PathEnds { places, ray_count: frame.image("ray_count", vk::Format::R32_UINT)? };
     let pass = terms.written_by(terms_pass(frame, "paths/megakernel_ends", ends.ray_count)).writes("ends", ends.places);
-    known(vertices.written_by(pass)).add()?;
+    known(vertices.written_by(pass), pixels).add()?;
     Ok((terms, vertices, ends))
 }
 

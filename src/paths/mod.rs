@@ -12,8 +12,9 @@ pub use wavefront::{FOOTPRINT, Options as WavefrontOptions, RAY, WEIGHTS};
 
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
+use vertices::{ListOptions, LooksUp, PathVertices};
 
-pub use megakernel::{add_with_ends, add_with_vertices};
+pub use megakernel::add_with_ends;
 
 /// How paths are traced: `paths.kernel`. The picture is the same.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +40,20 @@ impl Kernel {
         }
     }
 
-    /// The same, and one path of the last frame once more for each square of `side` pixels a side. Only the megakernel does that.
+    /// The same, with the vertices of the path behind its filter vertex. `known`: by their cells.
+    pub fn add_with_vertices(
+        self,
+        frame: &mut FrameBuilder,
+        list: ListOptions,
+        known: &LooksUp,
+    ) -> Result<(terms::Terms, PathVertices), GpuError> {
+        match self {
+            Self::Megakernel => megakernel::add_with_vertices(frame, list, known),
+            Self::Wavefront(options) => wavefront::add_with_vertices(frame, options, list, known),
+        }
+    }
+
+    /// As [`Self::add_with_terms`], and one path of the last frame once more for each square of `side` pixels a side. Only the megakernel does that.
     pub fn add_with_retraced(self, frame: &mut FrameBuilder, side: u32) -> Result<(terms::Terms, Retraced), GpuError> {
         if let Self::Wavefront(_) = self {
             tracing::warn!("paths.kernel=wavefront retraces no paths, which hpsf.time=hybrid is about: the megakernel is used");

@@ -46,6 +46,12 @@ pub struct PathEnds {
     pub ray_count: ImageHandle,
 }
 
+/// Declares for a kernel where it looks up whether a list may end: so many keys at most.
+pub type LooksUp<'k> = dyn for<'b, 'a> Fn(PassBuilder<'b, 'a>, u64) -> PassBuilder<'b, 'a> + 'k;
+
+/// Of a vertex, in each of a list's buffers.
+const BYTES: u64 = 16;
+
 /// Specialization constants.
 const MOST_VERTICES: u32 = 204;
 const LAST_IS_READ: u32 = 205;
@@ -54,7 +60,7 @@ impl PathVertices {
     /// # Errors
     /// More bytes than a kernel of this device can see of one buffer.
     pub(super) fn new(frame: &mut FrameBuilder, options: ListOptions) -> Result<Self, GpuError> {
-        let bytes = 16 * u64::from(frame.pixels()) * u64::from(options.most);
+        let bytes = BYTES * u64::from(frame.pixels()) * u64::from(options.most);
         Ok(Self {
             options,
             count: frame.image("path_vertices", vk::Format::R32_UINT)?,
@@ -69,5 +75,24 @@ impl PathVertices {
         let pass = self.options.constants(pass);
         let pass = pass.writes("path_vertices", self.count).writes("specular_attenuation", self.specular_attenuation);
         pass.writes("vertex_places", self.places).writes("vertex_links", self.links).writes("vertex_light", self.light)
+    }
+
+    /// By a kernel that begins lists: empty ones.
+    pub(super) fn begun_by<'b, 'a>(&self, pass: PassBuilder<'b, 'a>) -> PassBuilder<'b, 'a> {
+        pass.writes("path_vertices", self.count).writes("specular_attenuation", self.specular_attenuation)
+    }
+
+    /// By a kernel that adds a vertex to each of so many lists.
+    pub(super) fn lengthened_by<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, lists: u64) -> PassBuilder<'b, 'a> {
+        let bytes = lists * BYTES;
+        let pass = self.options.constants(pass);
+        let pass = pass.updates("path_vertices", self.count).writes("specular_attenuation", self.specular_attenuation).touching(0);
+        let pass = pass.writes("vertex_places", self.places).touching(bytes).writes("vertex_links", self.links).touching(bytes);
+        pass.updates("vertex_light", self.light).touching(bytes)
+    }
+
+    /// By a kernel that adds light to a vertex of each of so many lists.
+    pub(super) fn lit_by<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, lists: u64) -> PassBuilder<'b, 'a> {
+        pass.updates("vertex_light", self.light).touching(lists * BYTES)
     }
 }

@@ -10,13 +10,14 @@
 //! passes recorded again.
 //!
 //! Keeps 196 bytes per pixel, 288 with terms apart: 100 of path (ray 32, weights 32, footprint 16, hit 20), 64 of shadow ray and
-//! its light, 8 of queues, 24 of sums, or 72 and 44 of filter vertex. Deviations and why: one kernel shades all materials, for they differ by numbers, not by code;
+//! its light, 8 of queues, 24 of sums, or 72 and 44 of filter vertex; lists of vertices grow where they are put out (lists.glsl). Deviations and why: one kernel shades all materials, for they differ by numbers, not by code;
 //! a pixel's paths do not overlap, so that sums need no atomics and are the same in every run. Declared bytes are those of a frame in
 //! which no path ends early.
 
 use super::terms::Terms;
 use super::tiles;
-use crate::frame::{BufferHandle, FrameBuilder, ImageHandle, MOST_GROUPS};
+use super::vertices::{ListOptions, LooksUp, PathVertices};
+use crate::frame::{BufferHandle, FrameBuilder, ImageHandle, MOST_GROUPS, PassBuilder};
 use crate::gpu::{GpuError, vk};
 
 /// Specialization constant: queues.
@@ -48,9 +49,14 @@ impl Options {
         self.first_visits + self.max_bounces + 1
     }
 
+    /// Vertices before the one that is visited.
+    fn vertex(self, turn: u32) -> u32 {
+        (turn + 1).saturating_sub(self.first_visits)
+    }
+
     /// Whether the turn begins with a ray that arrives, or is another visit to the first vertex.
     fn arrives(self, turn: u32) -> bool {
-        turn == 0 || turn >= self.first_visits
+        turn == 0 || self.vertex(turn) > 0
     }
 }
 
@@ -68,18 +74,24 @@ pub fn add(frame: &mut FrameBuilder, options: Options) -> Result<ImageHandle, Gp
 pub fn add_with_terms(frame: &mut FrameBuilder, options: Options) -> Result<Terms, GpuError> {
     let wavefront = Wavefront::new(frame, true)?;
     wavefront.trace(frame, options)?;
-    let terms = Terms::new(frame)?;
-    let pass = frame.pass("wavefront write", "paths/wavefront/write_terms").elements(wavefront.slots);
-    let pass = wavefront
-        .apart
-        .iter()
-        .fold(pass, |pass, apart| pass.reads("direct", apart.direct).reads("indirect", apart.indirect).reads("vertices", apart.vertices));
-    terms.written_by(pass.reads("front", wavefront.front)).add()?;
-    Ok(terms)
+    wavefront.write_terms(frame)
+}
+
+/// The same, with the vertices of the path behind its filter vertex: no bytes more than the lists themselves.
+pub fn add_with_vertices(
+    frame: &mut FrameBuilder,
+    options: Options,
+    list: ListOptions,
+    known: &LooksUp,
+) -> Result<(Terms, PathVertices), GpuError> {
+    let vertices = PathVertices::new(frame, list)?;
+    let wavefront = Wavefront { lists: Some(Lists { vertices, known }), ..Wavefront::new(frame, true)? };
+    wavefront.trace(frame, options)?;
+    Ok((wavefront.write_terms(frame)?, vertices))
 }
 
 /// What the kernels pass on to each other.
-struct Wavefront {
+struct Wavefront<'k> {
     /// Of paths: pixels, tile by tile.
     slots: u32,
     sample_number: BufferHandle,
@@ -94,6 +106,7 @@ struct Wavefront {
     front: BufferHandle,
     ray_count: ImageHandle,
     apart: Option<TermsApart>,
+    lists: Option<Lists<'k>>,
 }
 
 /// Sums that only filters ask for.
@@ -103,7 +116,13 @@ struct TermsApart {
     vertices: BufferHandle,
 }
 
-impl Wavefront {
+/// What the paths' lists of vertices go to, and where they are known to end.
+struct Lists<'k> {
+    vertices: PathVertices,
+    known: &'k LooksUp<'k>,
+}
+
+impl Wavefront<'_> {
     fn new(frame: &mut FrameBuilder, terms_apart: bool) -> Result<Self, GpuError> {
         let slots = 32 * tiles(frame.extent());
         check_device(frame, slots)?;
@@ -118,6 +137,7 @@ impl Wavefront {
         Ok(Self {
             slots,
             apart: apart.transpose()?,
+            lists: None,
             queues: [buffer("queue of even turns", 4)?, buffer("queue of odd turns", 4)?],
             rays: buffer("rays", RAY)?,
             weights: buffer("weights", WEIGHTS)?,
@@ -131,9 +151,13 @@ impl Wavefront {
         })
     }
 
-    /// A kernel of paths to radiance, or of paths with terms apart.
-    fn variant(&self, [plain, terms_apart]: [&'static str; 2]) -> &'static str {
-        if self.apart.is_some() { terms_apart } else { plain }
+    /// A kernel of paths to radiance, of paths with terms apart, or of those with lists of vertices, too.
+    fn variant(&self, [plain, terms_apart, vertices]: [&'static str; 3]) -> &'static str {
+        match (&self.lists, &self.apart) {
+            (Some(_), _) => vertices,
+            (None, Some(_)) => terms_apart,
+            (None, None) => plain,
+        }
     }
 
     fn trace(&self, frame: &mut FrameBuilder, options: Options) -> Result<(), GpuError> {
@@ -148,7 +172,7 @@ impl Wavefront {
             if options.arrives(turn) {
                 self.extend(frame, heads, turn)?;
             }
-            self.shade(frame, heads, turn)?;
+            self.shade(frame, heads, options, turn)?;
             // The last arrivals look for no light.
             if turn + 1 < options.turns() {
                 self.connect(frame, heads, turn)?;
@@ -159,7 +183,7 @@ impl Wavefront {
     }
 
     fn generate(&self, frame: &mut FrameBuilder, heads: BufferHandle) -> Result<(), GpuError> {
-        let kernel = self.variant(["paths/wavefront/generate", "paths/wavefront/generate_terms"]);
+        let kernel = self.variant(["paths/wavefront/generate", "paths/wavefront/generate_terms", "paths/wavefront/generate_vertices"]);
         let pass = frame.pass("wavefront generate", kernel).elements(self.slots).writes("queue", self.queues[0]);
         let pass = pass.updates("heads", heads).reads("sample_number", self.sample_number).writes("rays", self.rays);
         let pass = pass.writes("weights", self.weights).writes("footprints", self.footprints).writes("front", self.front);
@@ -167,7 +191,7 @@ impl Wavefront {
         let apart = self.apart.iter().fold(pass, |pass, apart| {
             pass.writes("direct", apart.direct).writes("indirect", apart.indirect).writes("vertices", apart.vertices)
         });
-        apart.add()
+        self.lists.iter().fold(apart, |pass, lists| lists.vertices.begun_by(pass)).add()
     }
 
     fn extend(&self, frame: &mut FrameBuilder, heads: BufferHandle, turn: u32) -> Result<(), GpuError> {
@@ -176,8 +200,9 @@ impl Wavefront {
         pass.reads("rays", self.rays).writes("hits", self.hits).add()
     }
 
-    fn shade(&self, frame: &mut FrameBuilder, heads: BufferHandle, turn: u32) -> Result<(), GpuError> {
-        let kernel = self.variant(["paths/wavefront/shade", "paths/wavefront/shade_terms"]);
+    fn shade(&self, frame: &mut FrameBuilder, heads: BufferHandle, options: Options, turn: u32) -> Result<(), GpuError> {
+        let kernel = self.variant(["paths/wavefront/shade", "paths/wavefront/shade_terms", "paths/wavefront/shade_vertices"]);
+        let pixels = u64::from(frame.pixels());
         let pass = frame.pass("wavefront shade", kernel).argument(turn).indirect(heads, paths_of(turn)).updates("heads", heads);
         let pass = pass.reads("sample_number", self.sample_number).reads("hits", self.hits);
         let pass = pass.reads("queue", self.queues[turn as usize % 2]).writes("next_queue", self.queues[(turn as usize + 1) % 2]);
@@ -187,15 +212,35 @@ impl Wavefront {
         let apart = self.apart.iter().fold(pass, |pass, apart| {
             pass.updates("direct", apart.direct).updates("indirect", apart.indirect).writes("vertices", apart.vertices)
         });
-        apart.add()
+        self.lists.iter().fold(apart, |pass, lists| lists.lengthened_by(pass, pixels, options.vertex(turn))).add()
     }
 
     fn connect(&self, frame: &mut FrameBuilder, heads: BufferHandle, turn: u32) -> Result<(), GpuError> {
-        let kernel = self.variant(["paths/wavefront/connect", "paths/wavefront/connect_terms"]);
+        let kernel = self.variant(["paths/wavefront/connect", "paths/wavefront/connect_terms", "paths/wavefront/connect_vertices"]);
+        let pixels = u64::from(frame.pixels());
         let pass = frame.pass("wavefront connect", kernel).argument(turn).indirect(heads, shadow_rays_of(turn)).reads("heads", heads);
         let pass = pass.reads("shadow_rays", self.shadow_rays).reads("lights", self.lights).updates("front", self.front);
         let apart = self.apart.iter();
-        apart.fold(pass, |pass, apart| pass.updates("direct", apart.direct).updates("indirect", apart.indirect)).add()
+        let pass = apart.fold(pass, |pass, apart| pass.updates("direct", apart.direct).updates("indirect", apart.indirect));
+        self.lists.iter().fold(pass, |pass, lists| lists.vertices.lit_by(pass, pixels)).add()
+    }
+
+    fn write_terms(&self, frame: &mut FrameBuilder) -> Result<Terms, GpuError> {
+        let terms = Terms::new(frame)?;
+        let pass = frame.pass("wavefront write", "paths/wavefront/write_terms").elements(self.slots).reads("front", self.front);
+        let pass = self.apart.iter().fold(pass, |pass, apart| {
+            pass.reads("direct", apart.direct).reads("indirect", apart.indirect).reads("vertices", apart.vertices)
+        });
+        terms.written_by(pass).add()?;
+        Ok(terms)
+    }
+}
+
+impl Lists<'_> {
+    /// By the visits to so many paths' vertex number `vertex`: a list's last vertex has at least the others and the filter vertex before it.
+    fn lengthened_by<'b, 'a>(&self, pass: PassBuilder<'b, 'a>, paths: u64, vertex: u32) -> PassBuilder<'b, 'a> {
+        let keys = if vertex >= self.vertices.options.most { paths } else { 0 };
+        (self.known)(self.vertices.lengthened_by(pass, paths), keys)
     }
 }
 

@@ -1,4 +1,4 @@
-//! `anhpsf`: nhpsf along paths that grow by a bounce with every frame.
+//! `anhpsf`: nhpsf along paths that grow by a bounce with every frame. Their ends are the megakernel's, whatever paths.kernel says.
 
 use super::{PassOptions, Technique, hpsf};
 use crate::filter::anhpsf;
@@ -21,11 +21,10 @@ fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle,
     let number = |key| options.parameters.number(key) as u32;
     // Paths are continued from vertices that they have only looked up, in the thesis' form, too.
     let list = ListOptions { most: number("nhpsf.vertices").min(number("paths.max_bounces")).max(1), last_is_read: true };
-    let keys = u64::from(frame.pixels());
     let (whole, chooses) = (number("anhpsf.transport") == 1, number("anhpsf.choice") == 1);
     let growth = anhpsf::Options::new(whole, chooses, number("paths.max_bounces"));
     hpsf::passes_of(frame, options, 1 + list.sampled() + growth.sampled(), false, |frame, table| {
-        let (terms, vertices, ends) = paths::add_with_ends(frame, list, |pass| table.looks_up(pass, keys))?;
+        let (terms, vertices, ends) = paths::add_with_ends(frame, list, &|pass, keys| table.looks_up(pass, keys))?;
         let chains = anhpsf::add(frame, table, &vertices, ends, growth)?;
         Ok(Paths { terms, behind: Some(vertices), chains: Some(chains), retraced: None })
     })

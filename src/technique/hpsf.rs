@@ -7,10 +7,10 @@ use crate::filter::hpsf::{self, Filtered, Options, Part, Paths, Table};
 use crate::filter::smooth::{self, Layer, Passes};
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
+use crate::paths::gbuffer;
 use crate::paths::gbuffer::GBuffer;
 use crate::paths::terms::Terms;
 use crate::paths::vertices::ListOptions;
-use crate::paths::{self, Kernel, gbuffer};
 use crate::scene::effects::Effect;
 
 /// The value of hpsf.time.
@@ -80,19 +80,15 @@ fn add_paths(frame: &mut FrameBuilder, options: PassOptions) -> Result<Paths, Gp
     }
     let list = nhpsf::list_of(options);
     let reads = options.parameters.number("hpsf.second") == 1.0 && list.sampled() > 0;
-    let terms = if reads && !moves && matches!(options.kernel(), Kernel::Megakernel) {
-        add_paths_to_second_vertices(frame, options, list)?
-    } else {
-        options.kernel().add_with_terms(frame)?
-    };
+    let terms =
+        if reads && !moves { add_paths_to_second_vertices(frame, options, list)? } else { options.kernel().add_with_terms(frame)? };
     Ok(Paths { terms, behind: None, chains: None, retraced: None })
 }
 
 /// What arrives at a second vertex is what a table of its own knows of it, whose cells come to know of light that changes too late.
 fn add_paths_to_second_vertices(frame: &mut FrameBuilder, options: PassOptions, list: ListOptions) -> Result<Terms, GpuError> {
-    let keys = u64::from(frame.pixels());
     let cells = Table::new(frame, Options { vertices: list.sampled(), ..table_options(options, Part::Behind) })?;
-    let (terms, vertices) = paths::add_with_vertices(frame, list, |pass| cells.looks_up(pass, keys))?;
+    let (terms, vertices) = options.kernel().add_with_vertices(frame, list, &|pass, keys| cells.looks_up(pass, keys))?;
     cells.learn(frame, &terms, &vertices)?;
     Ok(terms)
 }

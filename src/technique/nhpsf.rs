@@ -4,7 +4,6 @@ use super::{PassOptions, Technique, hpsf};
 use crate::filter::hpsf::Paths;
 use crate::frame::{FrameBuilder, ImageHandle};
 use crate::gpu::GpuError;
-use crate::paths;
 use crate::paths::vertices::ListOptions;
 
 pub(super) const TECHNIQUE: Technique = Technique {
@@ -17,9 +16,8 @@ pub(super) const TECHNIQUE: Technique = Technique {
 
 fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
     let list = list_of(options);
-    let keys = u64::from(frame.pixels());
     hpsf::passes_of(frame, options, 1 + list.sampled(), false, |frame, table| {
-        let (terms, vertices) = paths::add_with_vertices(frame, list, |pass| table.looks_up(pass, keys))?;
+        let (terms, vertices) = options.kernel().add_with_vertices(frame, list, &|pass, keys| table.looks_up(pass, keys))?;
         Ok(Paths { terms, behind: Some(vertices), chains: None, retraced: None })
     })
 }

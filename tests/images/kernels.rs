@@ -6,13 +6,17 @@ use glam::{DMat4, DVec3};
 use pathspace::scene::{AlphaMode, CameraView, Environment, Instance, Light, LightKind, Local, Material, Node, Scene};
 use pathspace::technique::{self, Renderer, Settings, ViewChoice};
 
-/// Everything that a technique puts out after some frames, and the picture.
+/// Where a technique's paths make lists of vertices.
+const OF_LISTS: [&str; 2] = ["path_vertices", "specular_attenuation"];
+
+/// Everything that a technique puts out after some frames, and the picture. Of lists, after so many that cells of theirs are known.
 fn outputs(gpu: &TestGpu, scene: &Scene, settings: &Settings, kernel: &str, samples: f64) -> Vec<(String, Vec<[f32; 3]>)> {
     let mut settings = settings.clone();
     set(&mut settings, &[("paths.kernel", kernel)]);
     let mut renderer = Renderer::new(gpu, scene.clone(), settings.clone()).unwrap();
     renderer.set_samples(samples);
-    (0..2).for_each(|_| renderer.render_frame().unwrap());
+    let makes_lists = settings.technique.name == "nhpsf" || settings.parameters.number("hpsf.second") == 1.0;
+    (0..if makes_lists { 4 } else { 2 }).for_each(|_| renderer.render_frame().unwrap());
     renderer.finish().unwrap();
     let names: &[&str] = match settings.technique.name {
         "reference" => &["radiance", "variance", "ray_count"],
@@ -30,7 +34,8 @@ fn outputs(gpu: &TestGpu, scene: &Scene, settings: &Settings, kernel: &str, samp
         ],
     };
     let picture = ("the picture".to_owned(), renderer.picture().unwrap().pixels);
-    names.iter().map(|&name| (name.to_owned(), output(&renderer, name).pixels)).chain([picture]).collect()
+    let of_lists: &[&str] = if makes_lists { &OF_LISTS } else { &[] };
+    names.iter().chain(of_lists).map(|&name| (name.to_owned(), output(&renderer, name).pixels)).chain([picture]).collect()
 }
 
 /// Rounding of a sum may differ on devices that fuse operations otherwise in other kernels; on lavapipe nothing differs.
@@ -107,6 +112,25 @@ fn the_wavefront_makes_the_megakernels_picture_with_everything_in_it() {
     for rays in ["1", "3"] {
         set(&mut apart, &[("lights.sole", "apart"), ("rays.first_shadow_rays", rays)]);
         assert_same(&gpu, "sole light apart", &scene, &apart, 1.0);
+    }
+}
+
+/// Vertices whose light comes from emission found, from shadow rays and through glass; lists that end early, where cells are known, and late.
+#[test]
+fn the_wavefront_makes_the_megakernels_lists_of_vertices() {
+    let gpu = common::gpu();
+    let everything = (everything(), Settings { view: view(), ..settings(40, 28) });
+    let cornell = (builtin("cornell"), settings(40, 28));
+    for ((scene, settings), technique, changes) in [
+        (&everything, "hpsf", &[("hpsf.second", "cells"), ("lights.sole", "apart"), ("rays.first_shadow_rays", "3")][..]),
+        (&everything, "nhpsf", &[("nhpsf.vertices", "3")]),
+        (&cornell, "hpsf", &[("hpsf.second", "cells"), ("nhpsf.vertices", "3"), ("nhpsf.wider", "1")]),
+        (&cornell, "nhpsf", &[("nhpsf.unknown", "dark"), ("rays.first_shadow_rays", "3")]),
+        (&cornell, "nhpsf", &[("nhpsf.form", "paper"), ("hpsf.vertex", "second")]),
+    ] {
+        let mut settings = Settings { technique: technique::find(technique).unwrap(), ..settings.clone() };
+        set(&mut settings, changes);
+        assert_same(&gpu, &format!("{changes:?}"), scene, &settings, 1.0);
     }
 }
 

@@ -24,6 +24,7 @@
 #include "filter/anhpsf/choice.glsl"
 #include "filter/nhpsf/known.glsl"
 #include "paths/end.glsl"
+#include "paths/vertex_light.glsl"
 #include "paths/wavefront/state.glsl"
 
 layout(local_size_x = 32) in;
@@ -32,7 +33,7 @@ layout(set = 1, binding = 0, scalar) readonly buffer Ends { PathEnd at[]; } ends
 /// The lists of this frame's paths.
 layout(set = 1, binding = 1, scalar) readonly buffer ListPlaces { vec4 at[]; } list_places;
 layout(set = 1, binding = 2, scalar) readonly buffer ListLinks { uvec4 at[]; } list_links;
-layout(set = 1, binding = 3, scalar) readonly buffer ListLight { uvec4 at[]; } list_light;
+layout(set = 1, binding = 3, scalar) readonly buffer ListLight { ReceivedLight at[]; } list_light;
 /// Kept: the path's state, and its chain.
 layout(set = 1, binding = 4, scalar) buffer ContinuedPaths { Continued at[]; } continued;
 layout(set = 1, binding = 5, scalar) buffer Rays { StoredRay at[]; } rays;
@@ -40,7 +41,7 @@ layout(set = 1, binding = 6, scalar) buffer Weights { StoredWeights at[]; } weig
 layout(set = 1, binding = 7, scalar) buffer Footprints { StoredFootprint at[]; } footprints;
 layout(set = 1, binding = 8, scalar) buffer ChainPlaces { vec4 at[]; } chain_places;
 layout(set = 1, binding = 9, scalar) buffer ChainLinks { uvec4 at[]; } chain_links;
-layout(set = 1, binding = 10, scalar) buffer ChainLight { uvec4 at[]; } chain_light;
+layout(set = 1, binding = 10, scalar) buffer ChainLight { ReceivedLight at[]; } chain_light;
 /// Vertices of the chain in this frame, and those of them, the first ones, that are complete.
 layout(set = 1, binding = 11, r32ui) writeonly uniform uimage2D chain_vertices;
 layout(set = 1, binding = 12, r32ui) writeonly uniform uimage2D chain_samples;
@@ -51,21 +52,7 @@ layout(set = 1, binding = 13, r32ui) uniform uimage2D ray_count;
 /// Last vertex of this frame's lists.
 layout(constant_id = 207) const uint LIST_END = 0;
 
-/// The vertex that the step begins with, as it is stored: its radiance alone changes.
-struct Origin {
-    uint index;
-    vec4 place;
-    uvec4 link;
-    uint incident;
-};
-
-Origin origin;
-
 const Hit NOTHING = Hit(0.0, 0u, 0u, vec2(0.0));
-
-uint at_of(uint pixel, uint index) {
-    return index * frame.extent.x * frame.extent.y + pixel;
-}
 
 uvec2 coordinates_of(uint pixel) {
     return uvec2(pixel % frame.extent.x, pixel / frame.extent.x);
@@ -76,15 +63,22 @@ vec4 place_of(uvec2 coordinates, FilterVertex vertex) {
     return vec4(vertex.position, view_plane_distance(primary_ray(coordinates, frame.jitter), frame.camera, vertex.travelled));
 }
 
-void keep_vertex(uint pixel, uint index, PathVertex vertex) {
-    uint at = at_of(pixel, index);
-    bool is_origin = index == origin.index;
-    vec4 place = place_of(coordinates_of(pixel), vertex.at);
-    uvec4 link = uvec4(floatBitsToUint(vertex.attenuation), pack_normal(vertex.at.normal));
-    chain_places.at[at] = is_origin ? origin.place : place;
-    chain_links.at[at] = is_origin ? origin.link : link;
-    uint incident = is_origin ? origin.incident : pack_normal(vertex.at.incident);
-    chain_light.at[at] = uvec4(floatBitsToUint(vertex.radiance), incident);
+void keep_vertex(uint pixel, uint index, FilterVertex vertex, vec3 attenuation) {
+    uint at = place_in_list(pixel, index);
+    chain_places.at[at] = place_of(coordinates_of(pixel), vertex);
+    chain_links.at[at] = uvec4(floatBitsToUint(attenuation), pack_normal(vertex.normal));
+    chain_light.at[at].incident = pack_normal(vertex.incident);
+}
+
+void keep_light(uint pixel, uint index, vec3 radiance) {
+    chain_light.at[place_in_list(pixel, index)].radiance = radiance;
+}
+
+/// The vertex that a step begins with: its radiance alone will change.
+void keep_origin(uint at, vec4 place, uvec4 link, uint incident) {
+    chain_places.at[at] = place;
+    chain_links.at[at] = link;
+    chain_light.at[at].incident = incident;
 }
 
 bool is_known(uint pixel, uint index, FilterVertex vertex) {
@@ -133,8 +127,8 @@ struct Walk {
 /// The path that waits at the end of this frame's list; its first vertex is the chain's vertex `index`.
 Walk walk_from_end(uint pixel, uint index, Sampler numbers) {
     PathEnd end = ends.at[pixel];
-    uint from = at_of(pixel, LIST_END);
-    origin = Origin(index, list_places.at[from], list_links.at[from], list_light.at[from].w);
+    uint from = place_in_list(pixel, LIST_END);
+    keep_origin(place_in_list(pixel, index), list_places.at[from], list_links.at[from], list_light.at[from].incident);
     Terms terms = no_terms();
     terms.vertices = index + 1u;
     Walk walk = Walk(path_at(end, numbers), end.hit, terms, true, true);
@@ -144,12 +138,14 @@ Walk walk_from_end(uint pixel, uint index, Sampler numbers) {
 
 /// The path that the last frame has kept.
 Walk walk_from_kept(uint pixel, Continued before, Sampler numbers) {
-    uint from = at_of(pixel, before.vertices - 1u);
+    uint from = place_in_list(pixel, before.vertices - 1u);
     Terms terms = no_terms();
     terms.vertices = WHOLE_CHAIN ? before.vertices : 1u;
-    uvec4 light = chain_light.at[from];
-    origin = Origin(terms.vertices - 1u, chain_places.at[from], chain_links.at[from], light.w);
-    terms.behind.radiance = uintBitsToFloat(light.xyz);
+    ReceivedLight light = chain_light.at[from];
+    terms.behind = light.radiance;
+    if (!WHOLE_CHAIN) {
+        keep_origin(place_in_list(pixel, 0u), chain_places.at[from], chain_links.at[from], light.incident);
+    }
     Path path = restored_path(rays.at[pixel], weights.at[pixel], footprints.at[pixel], numbers);
     Walk walk = Walk(path, NOTHING, terms, false, before.grows == 1u);
     walk.path.place = pixel;
@@ -167,16 +163,18 @@ bool gives_way(uint pixel, Walk walk, bool is_new, bool is_last) {
     }
     uvec2 coordinates = coordinates_of(pixel);
     uint index = walk.terms.vertices;
-    PathVertex own = walk.terms.behind;
-    FilterPoint point = vertex_point(coordinates, place_of(coordinates, own.at), pack_normal(own.at.normal), pack_normal(own.at.incident));
+    uint own = place_in_list(pixel, index - 1u);
+    uvec4 own_link = chain_links.at[own];
+    FilterPoint point = vertex_point(coordinates, chain_places.at[own], own_link.w, chain_light.at[own].incident);
     Cell own_cell = known_at(point, vertex_numbers(coordinates, index - 1u));
     if (is_last || own_cell.count == 0u) {
         return own_cell.count > 0u;
     }
-    uint from = at_of(pixel, LIST_END);
+    uint from = place_in_list(pixel, LIST_END);
     uvec4 link = list_links.at[from];
-    point = vertex_point(coordinates, list_places.at[from], link.w, list_light.at[from].w);
-    float chance = chance_to_give_way(own_cell, own.attenuation, known_at(point, vertex_numbers(coordinates, index)), uintBitsToFloat(link.xyz));
+    point = vertex_point(coordinates, list_places.at[from], link.w, list_light.at[from].incident);
+    vec3 own_attenuation = uintBitsToFloat(own_link.xyz);
+    float chance = chance_to_give_way(own_cell, own_attenuation, known_at(point, vertex_numbers(coordinates, index)), uintBitsToFloat(link.xyz));
     walk.path.numbers.dimension = SELECTION_PAIRS + 16u * walk.path.vertex + 14u;
     return sample_1d(walk.path.numbers) < chance;
 }

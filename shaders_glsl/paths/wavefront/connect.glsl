@@ -19,9 +19,12 @@ void main() {
         return;
     }
     StoredLight light = lights.at[i];
-    uint slot = light.target & SLOT_MASK;
+    uint slot = target_slot(light.target);
     Terms found = no_terms();
+#ifdef VERTEX_LIST
+    found.vertices = light.target >> LIST_SHIFT;
+#endif
     found.attenuation = front.at[slot].attenuation;
-    add_term(found, light.target >> TERM_SHIFT, light.diffuse_weight, light.specular_weight, light.radiance);
+    add_term(found, target_term(light.target), light.diffuse_weight, light.specular_weight, light.radiance);
     add_to_sums(slot, found);
 }

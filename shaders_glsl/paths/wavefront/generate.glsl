@@ -17,13 +17,22 @@ layout(set = 1, binding = 8, scalar) writeonly buffer Direct { StoredLobes at[];
 layout(set = 1, binding = 9, scalar) writeonly buffer Indirect { StoredLobes at[]; } indirect;
 layout(set = 1, binding = 10, scalar) writeonly buffer Vertices { StoredVertex at[]; } vertices;
 #endif
+#ifdef VERTEX_LIST
+layout(set = 1, binding = 22, COLOR_FORMAT) writeonly uniform image2D specular_attenuation;
+layout(set = 1, binding = 23, r32ui) writeonly uniform uimage2D path_vertices;
+#endif
 
-void clear_terms(uint slot) {
+void clear_pixel(uint slot, ivec2 pixel) {
+    imageStore(ray_count, pixel, uvec4(0u));
     front.at[slot] = StoredFront(vec3(0.0), vec3(0.0));
 #ifdef SEPARATE_TERMS
     direct.at[slot] = StoredLobes(vec3(0.0), vec3(0.0));
     indirect.at[slot] = StoredLobes(vec3(0.0), vec3(0.0));
     vertices.at[slot] = StoredVertex(vec3(0.0), 0.0, vec3(0.0), vec3(0.0), 0u);
+#endif
+#ifdef VERTEX_LIST
+    imageStore(specular_attenuation, pixel, finite_or_black(vec3(0.0)));
+    imageStore(path_vertices, pixel, uvec4(0u));
 #endif
 }
 
@@ -37,8 +46,7 @@ void main() {
         weights.at[slot] = stored_weights(path);
         footprints.at[slot] = stored_footprint(path);
         if (sample_number.number == 0u) {
-            clear_terms(slot);
-            imageStore(ray_count, ivec2(pixel), uvec4(0u));
+            clear_pixel(slot, ivec2(pixel));
         } else {
             front.at[slot].attenuation = vec3(0.0);
         }

@@ -44,12 +44,24 @@ struct StoredLight {
     vec3 radiance;
     float diffuse_weight;
     vec3 specular_weight;
-    /// Its path's slot, and the term that it belongs to in the upper two bits.
+    /// From the lowest bit on: its path's slot, 24; the term that it belongs to, 2; vertices of the path's list, to whose last one that may be, 6.
     uint target;
 };
 
-const uint TERM_SHIFT = 30u;
-const uint SLOT_MASK = (1u << TERM_SHIFT) - 1u;
+const uint TERM_SHIFT = 24u;
+const uint LIST_SHIFT = 26u;
+
+uint light_target(uint slot, uint term, uint vertices) {
+    return slot | term << TERM_SHIFT | vertices << LIST_SHIFT;
+}
+
+uint target_slot(uint target) {
+    return bitfieldExtract(target, 0, 24);
+}
+
+uint target_term(uint target) {
+    return bitfieldExtract(target, 24, 2);
+}
 
 /// Terms in front of the filter vertex, or the sum of all.
 struct StoredFront {

@@ -3,6 +3,7 @@
 //
 // A turn is one visit. The first vertex has one for each of its shadow rays; every other one has one.
 #include "paths/wavefront/append.glsl"
+#include "paths/wavefront/lists.glsl"
 #include "paths/wavefront/state.glsl"
 #include "paths/wavefront/sums.glsl"
 
@@ -36,13 +37,15 @@ void store_filter_vertex(uint slot, Terms terms) {
 #endif
 }
 
-/// True where the path goes on. The light to be found is `pending`.
-bool shade(uint slot, inout Pending pending) {
+/// True where the path goes on. The light to be found is `pending`, for `target`.
+bool shade(uint slot, inout Pending pending, inout uint target) {
     uvec2 pixel = pixel_of_slot(slot);
     Sampler numbers = path_numbers(pixel, frame.first_sample + sample_number.number);
     Path path = restored_path(rays.at[slot], weights.at[slot], footprints.at[slot], numbers);
     Hit hit = hits.at[slot];
     Terms terms = no_terms();
+    restore_list(pixel, path, terms);
+    uint vertices = vertices_behind(terms);
     bool filters = is_in_front(path);
     if (!filters) {
         terms.attenuation = front.at[slot].attenuation;
@@ -55,9 +58,11 @@ bool shade(uint slot, inout Pending pending) {
     }
     count_rays(pixel, uvec2(arrives, pending.ray.t_max > 0.0));
     add_to_sums(slot, terms);
+    store_list(pixel, vertices, terms);
     if (filters && !is_in_front(path)) {
         store_filter_vertex(slot, terms);
     }
+    target = light_target(slot, pending.term, vertices_behind(terms));
     if (goes_on) {
         rays.at[slot] = stored_ray(path);
         weights.at[slot] = stored_weights(path);
@@ -71,10 +76,11 @@ void main() {
     Pending pending;
     pending.ray = NO_RAY;
     uint slot = 0u;
+    uint target = 0u;
     bool goes_on = false;
     if (i < heads.at[paths_of(turn)].count) {
         slot = queue.at[i];
-        goes_on = shade(slot, pending);
+        goes_on = shade(slot, pending, target);
     }
     uint place = append(paths_of(turn + 1u), goes_on);
     if (goes_on) {
@@ -85,7 +91,6 @@ void main() {
     if (waits) {
         Ray ray = pending.ray;
         shadow_rays.at[place] = StoredShadowRay(ray.origin, ray.t_max, ray.direction, pending.alpha_seed);
-        uint target = slot | pending.term << TERM_SHIFT;
         lights.at[place] = StoredLight(pending.radiance, pending.diffuse_weight, pending.specular_weight, target);
     }
 }

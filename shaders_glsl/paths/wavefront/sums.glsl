@@ -3,6 +3,8 @@
 #define PATHS_WAVEFRONT_SUMS_GLSL
 
 #include "paths/terms.glsl"
+#include "paths/vertex_light.glsl"
+#include "paths/vertices.glsl"
 #include "paths/wavefront/records.glsl"
 
 layout(set = 1, binding = 8, scalar) buffer Front { StoredFront at[]; } front;
@@ -10,10 +12,21 @@ layout(set = 1, binding = 8, scalar) buffer Front { StoredFront at[]; } front;
 layout(set = 1, binding = 9, scalar) buffer Direct { StoredLobes at[]; } direct;
 layout(set = 1, binding = 10, scalar) buffer Indirect { StoredLobes at[]; } indirect;
 #endif
+#ifdef VERTEX_LIST
+layout(set = 1, binding = 26, scalar) buffer VertexLight { ReceivedLight at[]; } vertex_light;
+#endif
 
 bool is_any(vec3 a, vec3 b) {
     return any(notEqual(a, vec3(0.0))) || any(notEqual(b, vec3(0.0)));
 }
+
+#ifdef VERTEX_LIST
+void keep_light(uint pixel, uint index, vec3 radiance) {
+    if (is_any(radiance, vec3(0.0))) {
+        vertex_light.at[place_in_list(pixel, index)].radiance += radiance;
+    }
+}
+#endif
 
 /// Adds what has been found; most terms are zero, and cost no bytes.
 void add_to_sums(uint slot, Terms found) {
@@ -29,6 +42,10 @@ void add_to_sums(uint slot, Terms found) {
         indirect.at[slot].diffuse += found.diffuse_indirect;
         indirect.at[slot].specular += found.specular_indirect;
     }
+#endif
+#ifdef VERTEX_LIST
+    uvec2 pixel = pixel_of_slot(slot);
+    finish_vertex(pixel.y * frame.extent.x + pixel.x, found);
 #endif
 }
 
