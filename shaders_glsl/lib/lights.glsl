@@ -229,7 +229,8 @@ bool sample_sole_light(vec3 position, float chosen, out LightSample result) {
 /// shine on `position`.
 bool sample_light(vec3 position, vec4 u, bool apart, out LightSample result) {
     float sole = EFFECT_SOLE_LIGHT ? frame.sole_probability : 0.0;
-    if (!apart && u.x < sole) {
+    // By the threshold's number: the bucket's keeps all its bits, for as many lights as there are.
+    if (!apart && u.y < sole) {
         return sample_sole_light(position, sole, result);
     }
     result = LightSample(vec3(0.0, 0.0, 1.0), FAR_AWAY, vec3(0.0), 0.0, false, 0u);
@@ -237,7 +238,7 @@ bool sample_light(vec3 position, vec4 u, bool apart, out LightSample result) {
         return false;
     }
     float others = 1.0 - sole;
-    u.x = apart ? u.x : min((u.x - sole) / others, 0.99999994);
+    u.y = apart ? u.y : min((u.y - sole) / others, 0.99999994);
     uint bucket = alias_bucket(frame.light_count, u.x);
     result.light = alias_choice(AliasBuffer(frame.light_alias).at[bucket], bucket, u.y);
     Light light = LightBuffer(frame.lights).at[result.light];

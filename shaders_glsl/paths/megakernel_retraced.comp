@@ -42,7 +42,8 @@ Kept kept_path(Terms terms, Ray from_camera, Camera camera) {
     vec3 diffuse = stored(received(terms.diffuse_direct, terms.attenuation)) + stored(received(terms.diffuse_indirect, terms.attenuation));
     vec3 specular = terms.vertex.layer == 0u ? vec3(0.0) : stored(terms.specular_direct) + stored(terms.specular_indirect);
     float distance = view_plane_distance(from_camera, camera, terms.vertex.travelled);
-    uint unfiltered = pcg3d(floatBitsToUint(terms.before)).x;
+    vec3 past_cells = terms.before + (terms.vertex.layer == 0u ? terms.specular_direct + terms.specular_indirect : vec3(0.0));
+    uint unfiltered = pcg3d(floatBitsToUint(past_cells)).x;
     return all_finite(diffuse + specular) ? Kept(diffuse, distance, specular, unfiltered) : Kept(vec3(0.0), 0.0, vec3(0.0), 0u);
 }
 

@@ -169,7 +169,8 @@ float emission_weight(Path path, float light_pdf) {
         return 1.0;
     }
     if (path.vertex == 1u && has_sole_ray(0u)) {
-        light_pdf /= 1.0 - frame.sole_probability;
+        // 0 stays 0 where nothing else shines.
+        light_pdf /= max(1.0 - frame.sole_probability, 1e-3);
     }
     return DIRECT == DIRECT_NEE ? 0.0 : power_heuristic(path.pdf, competing_pdf(light_pdf));
 }

@@ -26,8 +26,8 @@ uvec2 retraced_pixel(uvec2 square, uint sample_index) {
 }
 
 /// A path of this frame as the next one needs it: what the filter vertex's diffuse lobe receives, what its other lobes send on where they are
-/// filtered, and the vertex's view-plane distance, 0 where the path is of no use. `unfiltered`: a hash of what goes past all filters, the
-/// light of a sole light above all; equal light has equal hashes.
+/// filtered, and the vertex's view-plane distance, 0 where the path is of no use. `unfiltered`: a hash of what goes past all cells, such as
+/// the light of a sole light; equal light has equal hashes.
 struct Kept {
     vec3 diffuse;
     float distance;

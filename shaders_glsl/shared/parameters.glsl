@@ -42,7 +42,7 @@ layout(constant_id = 108) const uint SCRAMBLE = 0;
 /// Whole paths in one kernel, or a kernel for each step of all paths, with queues between them (Laine et al. 2013). The same picture; wavefront holds 196 bytes per pixel (288 for filters), and pays where rays and materials diverge on wide devices. Paths that hpsf.time=hybrid traces again and those that anhpsf continues are the megakernel's.
 layout(constant_id = 109) const uint PATHS_KERNEL = 0;
 //@ lights.sole sampled sampled|apart
-/// A scene's only point, spot or directional light, where the camera sees what it shines on: one among the lights that shadow rays are sent to by chance, or with a shadow ray of its own, whose light has no noise and goes past all filters. Apart: sharp shadows in the first frame, and less noise of the other lights; one more ray per pixel.
+/// A scene's only point, spot or directional light, where the camera sees what it shines on: one among the lights that shadow rays are sent to by chance, or with a shadow ray of its own, whose light has no noise and goes past all filters. Apart: sharp shadows in the first frame, and less noise of the other lights; one more ray per pixel. Not in nhpsf and anhpsf, whose vertices share cells.
 layout(constant_id = 110) const uint LIGHTS_SOLE = 0;
 //@ paths.albedo apart apart|divided
 /// Albedo at the filter vertex: kept apart and multiplied in after filters, or multiplied in while tracing, divided out for filters (by 0.001 at least), multiplied again. Divided loses channels of zero albedo and precision (Meijer, section 4.1).
@@ -96,10 +96,10 @@ layout(constant_id = 137) const uint HPSF_TEMPORAL = 0;
 /// Which of a path's diffuse vertices is filtered. Second resembles final gathering (Binder, fig. 10): no borders or lost shadows in what is seen, whose own light stays as noisy as the path found it. No cost.
 layout(constant_id = 150) const uint HPSF_VERTEX = 0;
 //@ hpsf.second trace trace|cells
-/// What arrives at a path's second diffuse vertex: it is traced, or read from what a table of its own knows of it since earlier frames, as nhpsf reads its vertices (nhpsf.vertices, nhpsf.wider). Cells leave half of the variance of indirect light, and take away a quarter of the rays; light that changes comes late, so paths are traced where lights or objects move.
+/// What arrives at a path's second diffuse vertex: it is traced, or read from what a table of its own knows of it, of this frame and earlier ones, as nhpsf reads its vertices (nhpsf.vertices, nhpsf.wider). Cells leave half of the variance of indirect light, and take away a quarter of the rays; light that changes comes late, so paths are traced where lights or objects move.
 layout(constant_id = 162) const uint HPSF_SECOND = 0;
 //@ nhpsf.form balanced balanced|paper
-/// What a vertex sends to the one before: what its cell knew in the last frame, or that and what the path itself has found there (Meijer, section 4.3), by which all indirect light counts twice. The same rays.
+/// What a vertex sends to the one before: what its cell knows, in nhpsf of the last frame, or that and what the path itself has found there (Meijer, section 4.3), by which all indirect light counts twice. The same rays.
 layout(constant_id = 151) const uint NHPSF_FORM = 0;
 //@ nhpsf.distance camera camera|path
 /// By what the cells of vertices behind the first one grow: their distance from the camera, so that they share the cells of the picture, or the length of the path, so that they have wider ones. No cost.

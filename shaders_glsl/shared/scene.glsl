@@ -177,11 +177,12 @@ struct FrameData {
     Address accel;
     /// EnergyTables of lib/energy.glsl (float[]), or 0.
     Address energy_tables;
+    /// Entries of the alias table.
     uint light_count;
     /// Index of the environment in lights, ~0u if it does not shine.
     uint environment_light;
-    /// Index of the only light without a size, ~0u if there is none or there are several, and its share of all power: the alias table is of the
-    /// others.
+    /// Index of the only light without a size, ~0u if there is none or there are several, and the probability of choosing it: the alias table is
+    /// of the others. 1 where nothing else shines.
     uint sole_light;
     float sole_probability;
     uvec2 environment_size;

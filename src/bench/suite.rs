@@ -189,10 +189,12 @@ impl Suite {
     }
 
     fn without_missing_scenes(mut self) -> Self {
-        let (there, missing) =
-            std::mem::take(&mut self.scenes).into_iter().partition(|scene| !scene.optional || self.folder.join(&scene.source).exists());
+        let is_there = |scene: &SceneRow| {
+            !scene.optional || Path::new(&scene.source).extension().is_none() || self.folder.join(&scene.source).exists()
+        };
+        let (there, missing): (Vec<_>, Vec<_>) = std::mem::take(&mut self.scenes).into_iter().partition(is_there);
         self.scenes = there;
-        for SceneRow { name, source, .. } in &missing as &Vec<SceneRow> {
+        for SceneRow { name, source, .. } in &missing {
             tracing::warn!("'{name}' is left out, since there is no '{}'", self.folder.join(source).display());
         }
         self
@@ -262,7 +264,7 @@ mod tests {
             Suite::parse("test", &text, Path::new(env!("CARGO_MANIFEST_DIR"))).unwrap()
         };
         let has_kitchen = |suite: &Suite| suite.scenes.iter().any(|scene| scene.name == "kitchen");
-        assert!(!has_kitchen(&suite("missing.glb")) && has_kitchen(&suite("Cargo.toml")));
+        assert!(!has_kitchen(&suite("missing.glb")) && has_kitchen(&suite("Cargo.toml")) && has_kitchen(&suite("cornell")));
     }
 
     #[test]

@@ -35,14 +35,25 @@ pub(super) fn transport(
     vertices: &PathVertices,
     sending: Sending,
 ) -> Result<(), GpuError> {
-    let pixels = u64::from(frame.pixels());
-    let (first, name) = (sending == Sending::First, if sending == Sending::First { "nhpsf send" } else { "nhpsf transport" });
-    let pass = frame.pass(name, "filter/nhpsf/transport").constant(RECEIVES, (!first).into());
-    let pass = reads_places(pass.constant(SENDS, (sending != Sending::Behind).into()), vertices);
-    let pass = pass.updates("vertex_light", vertices.light).reads("specular_attenuation", vertices.specular_attenuation);
-    let pass = pass.updates("diffuse_indirect", terms.diffuse_indirect).updates("specular_indirect", terms.specular_indirect);
-    let pass = if first { table.looks_up_now(pass, pixels) } else { table.looks_up(pass, pixels * u64::from(vertices.options.most)) };
-    pass.add()
+    let (pixels, most) = (u64::from(frame.pixels()), u64::from(vertices.options.most));
+    let (name, seen, looked_up) = match sending {
+        Sending::All => ("nhpsf transport", most, most),
+        Sending::Behind => ("nhpsf transport", most, most - 1),
+        Sending::First => ("nhpsf send", 1, 1),
+    };
+    let (receives, sends, touched) = (sending != Sending::First, sending != Sending::Behind, 16 * pixels * seen);
+    let pass = frame.pass(name, "filter/nhpsf/transport").constant(RECEIVES, receives.into()).constant(SENDS, sends.into());
+    let pass = pass.reads("path_vertices", vertices.count).reads("vertex_places", vertices.places).touching(touched);
+    let pass = pass.reads("vertex_links", vertices.links).touching(touched).updates("vertex_light", vertices.light).touching(touched);
+    let pass = touched_if(sends, pass.reads("specular_attenuation", vertices.specular_attenuation));
+    let pass = touched_if(sends, pass.updates("diffuse_indirect", terms.diffuse_indirect));
+    let pass = touched_if(sends, pass.updates("specular_indirect", terms.specular_indirect));
+    if receives { table.looks_up(pass, pixels * looked_up).add() } else { table.looks_up_now(pass, pixels * looked_up).add() }
+}
+
+/// The image named last may be bound for nothing.
+fn touched_if<'b, 'a>(touched: bool, pass: PassBuilder<'b, 'a>) -> PassBuilder<'b, 'a> {
+    if touched { pass } else { pass.touching(0) }
 }
 
 pub(super) fn collect(frame: &mut FrameBuilder, table: &Table, vertices: &PathVertices) -> Result<(), GpuError> {

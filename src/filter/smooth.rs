@@ -1,6 +1,6 @@
 //! An edge-avoiding a-trous filter over the screen, guided by variance: shaders_glsl/filter/smooth/, Dammertz et al. 2010, Schied et al. 2017.
 //!
-//! Takes up to three parts of the light and the filter vertices; returns them smoothed, after passes whose taps are 1, 2, 4, ... pixels apart.
+//! Takes up to three parts of the light and the filter vertices; smooths them, in passes whose taps are 1, 2, 4, ... pixels apart.
 //! No history. A pass reads 20 bytes per pixel (its other taps come from caches), and for each part 20 more, and writes 16, 12 and 8 at fp16.
 
 use crate::display::temporal::Known;

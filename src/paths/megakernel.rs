@@ -3,7 +3,8 @@
 //! with the vertices behind the filter vertex (megakernel_vertices.comp).
 //!
 //! Takes the scene. Also returns `ray_count`: scattered rays in the low, shadow rays in the high 16 bits. No history. Writes 20 bytes per
-//! pixel, or 128 with terms (12 and 80 at fp16), 28 of them for the filter vertex; traces up to 2 (bounces + 1) + 1 rays per sample. Radiance
+//! pixel, or 128 with terms (12 and 80 at fp16), 28 of them for the filter vertex; traces up to 2 (bounces + 1) + 1 rays per sample, and more from the
+//! first vertex as rays.first_shadow_rays and lights.sole say. Radiance
 //! keeps 16 more, which only frames in several submissions touch.
 
 use super::terms::Terms;

@@ -39,7 +39,7 @@ const VERTEX: u64 = 44;
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     pub max_bounces: u32,
-    /// Shadow rays of the first vertex.
+    /// To the first vertex, one for each of its shadow rays.
     pub first_visits: u32,
 }
 

@@ -138,7 +138,7 @@ impl LightTable {
         &self.alias
     }
 
-    /// Lights to choose from, but for the [`Self::sole`] one: 0 where nothing else shines.
+    /// Entries of the table to choose from, in which the [`Self::sole`] light has no weight: 0 where nothing else shines.
     pub fn count(&self) -> u32 {
         self.alias.len() as u32
     }

@@ -1,6 +1,6 @@
 //! `anhpsf`: nhpsf along paths that grow by a bounce with every frame. Their ends are the megakernel's, whatever paths.kernel says.
 
-use super::{PassOptions, Technique, hpsf};
+use super::{PassOptions, Technique, hpsf, nhpsf};
 use crate::filter::anhpsf;
 use crate::filter::hpsf::Paths;
 use crate::frame::{FrameBuilder, ImageHandle};
@@ -13,6 +13,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
     help: "nhpsf along paths that are continued from frame to frame, by one scattered ray and one shadow ray of each pixel",
     // Deep vertices come back to a cell by chance: it must outlast the frames between.
     defaults: &[("hpsf.recency", "1"), ("hpsf.normal_bits", "6"), ("hpsf.age", "64"), ("nhpsf.vertices", "1"), ("paths.max_bounces", "16")],
+    fixed: &nhpsf::SHARED_CELLS,
     passes,
     ..hpsf::TECHNIQUE
 };

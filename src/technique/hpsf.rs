@@ -23,6 +23,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
     rounds: true,
     extra_outputs: &hpsf::STATISTICS,
     defaults: &[],
+    fixed: &[],
     passes,
 };
 

@@ -41,6 +41,8 @@ pub struct Technique {
     pub(crate) extra_outputs: &'static [&'static str],
     /// Parameters whose default differs here.
     pub defaults: &'static [(&'static str, &'static str)],
+    /// Parameters that it takes no other value of.
+    pub fixed: &'static [(&'static str, &'static str)],
     /// Declares the passes; returns the picture.
     pub(crate) passes: fn(&mut FrameBuilder, PassOptions) -> Result<ImageHandle, GpuError>,
 }
@@ -49,6 +51,17 @@ impl Technique {
     /// Samples per pixel that its passes take; what is asked for beyond goes in rounds, and is not chosen where only a budget is given.
     pub fn most_at_once(&self) -> u32 {
         if self.rounds { 1 } else { u32::MAX }
+    }
+
+    /// Puts right what it takes no other value of, with a warning.
+    fn fix(&self, parameters: &mut Parameters) {
+        for (key, value) in self.fixed {
+            let asked = parameters.number(key);
+            parameters.set(key, value).expect("a technique's fixed values are parameters'");
+            if parameters.number(key) != asked {
+                tracing::warn!("{} takes {key}={value} alone", self.name);
+            }
+        }
     }
 
     /// Every parameter at its default here.

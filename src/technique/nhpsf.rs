@@ -10,9 +10,13 @@ pub(super) const TECHNIQUE: Technique = Technique {
     name: "nhpsf",
     help: "hpsf at every diffuse vertex of a short path, which goes on in what the last frame's cells know",
     defaults: &[("hpsf.recency", "1"), ("hpsf.normal_bits", "6")],
+    fixed: &SHARED_CELLS,
     passes,
     ..hpsf::TECHNIQUE
 };
+
+/// Vertices of the picture and those behind share cells, and must not differ in what light they hold.
+pub(super) const SHARED_CELLS: [(&str, &str); 1] = [("lights.sole", "sampled")];
 
 fn passes(frame: &mut FrameBuilder, options: PassOptions) -> Result<ImageHandle, GpuError> {
     let list = list_of(options);

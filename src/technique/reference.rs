@@ -14,6 +14,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
     extra_outputs: &[],
     // Many samples filter textures themselves, and better.
     defaults: &[("textures.level", "zero")],
+    fixed: &[],
     passes,
 };
 

@@ -45,8 +45,9 @@ impl Renderer {
     ///
     /// # Errors
     /// An unknown camera, structure or output; what the device refuses.
-    pub fn new(gpu: &Gpu, scene: Scene, settings: Settings) -> Result<Self, RenderError> {
+    pub fn new(gpu: &Gpu, scene: Scene, mut settings: Settings) -> Result<Self, RenderError> {
         let technique = settings.technique;
+        technique.fix(&mut settings.parameters);
         let mut prepared = PreparedScene::new(gpu, scene, &settings, FRAMES_IN_FLIGHT)?;
         let (mut clock, before) = (Clock::start(), gpu.allocated_bytes());
         let bind_structure = |slot: usize, set: &DescriptorSet| prepared.structure.bind(slot, set);

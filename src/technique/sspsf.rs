@@ -14,6 +14,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
     rounds: true,
     extra_outputs: &[],
     defaults: &[],
+    fixed: &[],
     passes,
 };
 

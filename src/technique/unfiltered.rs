@@ -13,6 +13,7 @@ pub(super) const TECHNIQUE: Technique = Technique {
     rounds: true,
     extra_outputs: &[],
     defaults: &[],
+    fixed: &[],
     passes,
 };
 

@@ -1,7 +1,7 @@
 //! What changes the noise or the time must not change the picture: every switch is held against the plain setting by a Z-test over
 //! blocks of 4x4 pixels, corrected for their number, at a significance of 10^-4: fixed seeds, so it either always or never fails.
 
-use crate::common::render::{Rendered, builtin, mean, render, set, settings, wall};
+use crate::common::render::{Rendered, builtin, mean, render, render_frames, set, settings, wall};
 use crate::common::{self, TestGpu};
 use glam::{DMat4, DVec3};
 use pathspace::metrics::z_test::{Estimate, z_test};
@@ -132,6 +132,32 @@ fn a_sole_light_apart_takes_noise_from_the_picture_and_nothing_else() {
     set(&mut apart, &[("lights.sole", "apart")]);
     let [sampled, apart] = [&plain, &apart].map(|settings| mean(&render(&gpu, &scene, settings, FRAMES).variance));
     assert!(apart < 0.95 * sampled, "{apart} instead of {sampled}");
+}
+
+/// Nothing but a point light above a smooth glossy floor: rays that leave the scene find nothing, whatever their density. And nhpsf, whose
+/// cells are of all vertices, takes no part of the light apart.
+#[test]
+fn a_light_that_is_all_there_is_may_be_apart() {
+    let gpu = common::gpu();
+    let place = |at: DVec3| Node { name: String::new(), parent: None, local: Local::Matrix(DMat4::from_translation(at)) };
+    let scene = Scene {
+        meshes: vec![wall()],
+        materials: vec![Material { roughness: 0.035, metallic: 0.5, ..Material::default() }],
+        nodes: vec![place(DVec3::ZERO), place(DVec3::new(0.5, 0.3, 1.0))],
+        instances: vec![Instance { mesh: 0, node: 0 }],
+        lights: vec![Light { name: String::new(), node: 1, color: [2.0; 3], kind: LightKind::Point, range: None }],
+        ..Default::default()
+    };
+    let view = ViewChoice::Fixed(CameraView::look_at(DVec3::new(0.3, 0.2, 4.0), DVec3::ZERO, 0.4));
+    let mut apart = Settings { view, ..settings(32, 32) };
+    let sampled = apart.clone();
+    set(&mut apart, &[("lights.sole", "apart")]);
+    let picture = |settings: &Settings, technique| render_frames(&gpu, &scene, settings, technique, 2).picture().unwrap().pixels;
+    let [a, b] = [&sampled, &apart].map(|settings| picture(settings, "unfiltered"));
+    let close = |(a, b): (&f32, &f32)| (a - b).abs() <= 1e-5 * a.abs().max(1e-3);
+    assert!(a.iter().flatten().any(|&value| value > 0.0) && a.iter().flatten().zip(b.iter().flatten()).all(close));
+    let [a, b] = [&sampled, &apart].map(|settings| picture(settings, "nhpsf"));
+    assert_eq!(a, b);
 }
 
 #[test]

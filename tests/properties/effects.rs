@@ -164,9 +164,12 @@ fn lights_count_by_kind_where_they_shine() {
         let light = Light { name: "lamp".into(), node: 0, color, kind, range: None };
         effects(&Scene { lights: vec![light], ..scene(|_| ()) })
     };
-    assert_eq!(lit(LightKind::Directional, [1.0; 3]), [Effect::PunctualLight]);
+    assert_eq!(lit(LightKind::Directional, [1.0; 3]), [Effect::PunctualLight, Effect::SoleLight]);
     assert_eq!(lit(LightKind::Sphere { radius: 0.1 }, [1.0; 3]), [Effect::SphereLight]);
     assert_eq!(lit(LightKind::Point, [0.0; 3]), []);
+    let light = |kind| Light { name: "lamp".into(), node: 0, color: [1.0; 3], kind, range: None };
+    let two = Scene { lights: vec![light(LightKind::Point), light(LightKind::Directional)], ..scene(|_| ()) };
+    assert_eq!(effects(&two), [Effect::PunctualLight]);
     assert_eq!(effects(&Scene { environment: Environment::Constant([0.0, 0.1, 0.0]), ..scene(|_| ()) }), [Effect::EnvironmentLight]);
 }
 

@@ -127,16 +127,18 @@ fn the_hybrid_has_nine_tenths_of_a_step_of_a_highlight_within_four_frames() {
     }
 }
 
-/// Also where the light is the only one without a size, whose light goes past the cells and only the antialiasing of hpsf+ remembers it.
+/// Also where the light is the only one without a size, whose light goes past the cells and only the antialiasing of hpsf+ remembers it; and
+/// on a metal, of which the table of diffuse light has no samples.
 #[test]
 fn the_picture_of_hpsf_plus_has_nine_tenths_of_a_step_of_the_light_within_four_frames() {
     let gpu = common::gpu();
     let high = DVec3::new(0.0, 4.0, 0.0);
-    for kind in [LightKind::Sphere { radius: 0.01 }, LightKind::Point] {
+    for (kind, metallic) in [(LightKind::Sphere { radius: 0.01 }, 0.0), (LightKind::Point, 0.0), (LightKind::Point, 1.0)] {
         let (mut scene, light) = lit_floor(high);
         scene.lights[0].kind = kind;
+        scene.materials[0] = Material { metallic, roughness: 0.8, ..scene.materials[0].clone() };
         scene.animation = moving(light, vec![high, DVec3::new(0.0, 3.0, 0.0)], Interpolation::Step);
-        let mut settings = with(&[]);
+        let mut settings = with(&[("hpsf.glossy", "on")]);
         settings.view = from_above(0.5);
         let mut renderer = render_frames(&gpu, &scene, &settings, "hpsf+", STEP);
         let before = mean(&renderer.picture().unwrap());
@@ -145,8 +147,8 @@ fn the_picture_of_hpsf_plus_has_nine_tenths_of_a_step_of_the_light_within_four_f
         renderer.restart(1, STEP + 1).unwrap();
         renderer.render_frame().unwrap();
         let after = mean(&renderer.picture().unwrap());
-        assert!(after > 1.5 * before, "{kind:?}: {before} {after}");
-        assert!((fourth - before) / (after - before) > 0.9, "{kind:?}: from {before} to {fourth}, not {after}");
+        assert!(after > 1.5 * before, "{kind:?}, metallic {metallic}: {before} {after}");
+        assert!((fourth - before) / (after - before) > 0.9, "{kind:?}, metallic {metallic}: from {before} to {fourth}, not {after}");
     }
 }
 

@@ -1,8 +1,8 @@
 // Adds each retraced path to the cell of its filter vertex: filter/hpsf/changes.glsl.
 //
 // A path whose vertex is now nearer or farther by more than a cell has met another surface, in front of the old one or behind it. That
-// tells nothing about the light on either, but that something has come into view there: filter/hpsf/forget.comp. Paths without the lobes that
-// the table is about are left out.
+// tells nothing about the light on either, but that something has come into view there: filter/hpsf/forget.comp. Of paths without the lobes
+// that the table is about, it only counts whether others have changed.
 #include "filter/hpsf/changes.glsl"
 #include "lib/elements.glsl"
 #include "paths/retraced.glsl"
@@ -63,7 +63,7 @@ void main() {
     Retraced path = retraced.at[index];
     vec4 numbers = jitter_numbers(pixel, 0u);
     float cell = power_of_two(level_at(before.distance, level_number(numbers)));
-    if (!(path.now.distance > 0.0) || !has_lobes(path.layer)) {
+    if (!(path.now.distance > 0.0)) {
         return;
     }
     float view_cosine = dot(camera_ray(frame.previous_camera, pixel, frame.previous_jitter).direction, frame.previous_camera.forward);
@@ -75,7 +75,7 @@ void main() {
         return;
     }
     float dither = unit_float(pcg3d(uvec3(pixel, frame.first_sample ^ frame.seed)).z);
-    for (uint level = 0u; level < parameters.hpsf_levels + FURTHER_LEVELS; level++) {
+    for (uint level = 0u; level < parameters.hpsf_levels + FURTHER_LEVELS && has_lobes(path.layer); level++) {
         add_path(change_key(point, numbers, level), radiance_of(path.now), radiance_of(before), dither);
     }
     if (others_changed(path.now, before)) {

@@ -56,11 +56,11 @@ uint light_target(uint slot, uint term, uint vertices) {
 }
 
 uint target_slot(uint target) {
-    return bitfieldExtract(target, 0, 24);
+    return bitfieldExtract(target, 0, int(TERM_SHIFT));
 }
 
 uint target_term(uint target) {
-    return bitfieldExtract(target, 24, 2);
+    return bitfieldExtract(target, int(TERM_SHIFT), int(LIST_SHIFT - TERM_SHIFT));
 }
 
 /// Terms in front of the filter vertex, or the sum of all.
