@@ -13,6 +13,10 @@
 //! its light, 8 of queues, 24 of sums, or 72 and 44 of filter vertex; lists of vertices grow where they are put out (lists.glsl). Deviations and why: one kernel shades all materials, for they differ by numbers, not by code;
 //! a pixel's paths do not overlap, so that sums need no atomics and are the same in every run. Declared bytes are those of a frame in
 //! which no path ends early.
+//!
+//! Measured on a software driver with two cores, 256x144: paths of hpsf+ take 0.75 of the megakernel's time in Sponza, 0.85 on cornell, 0.92 on
+//! material, and a frame 0.83, 0.94 and 0.95. Threads that fetch their next ray where one of their subgroup has ended, within the traversal (Aila
+//! and Laine, "Understanding the Efficiency of Ray Traversal on GPUs", HPG 2009), make extend slower there, by 1.1 to 1.5.
 
 use super::terms::Terms;
 use super::tiles;

@@ -22,7 +22,7 @@ void main() {
     uint slot = target_slot(light.target);
     Terms found = no_terms();
 #ifdef VERTEX_LIST
-    found.vertices = light.target >> LIST_SHIFT;
+    found.vertices = target_vertices(light.target);
 #endif
     found.attenuation = front.at[slot].attenuation;
     add_term(found, target_term(light.target), light.diffuse_weight, light.specular_weight, light.radiance);

@@ -44,23 +44,29 @@ struct StoredLight {
     vec3 radiance;
     float diffuse_weight;
     vec3 specular_weight;
-    /// From the lowest bit on: its path's slot, 24; the term that it belongs to, 2; vertices of the path's list, to whose last one that may be, 6.
+    /// Where it belongs: light_target.
     uint target;
 };
 
-const uint TERM_SHIFT = 24u;
-const uint LIST_SHIFT = 26u;
+/// A queue has no more slots (queue.glsl), and a list no more than 16 vertices.
+const int SLOT_BITS = 24;
+const int TERM_BITS = 2;
 
+/// Its path's slot, the term, and the length of the path's list, whose last vertex TERM_BEHIND is about.
 uint light_target(uint slot, uint term, uint vertices) {
-    return slot | term << TERM_SHIFT | vertices << LIST_SHIFT;
+    return slot | term << SLOT_BITS | vertices << (SLOT_BITS + TERM_BITS);
 }
 
 uint target_slot(uint target) {
-    return bitfieldExtract(target, 0, int(TERM_SHIFT));
+    return bitfieldExtract(target, 0, SLOT_BITS);
 }
 
 uint target_term(uint target) {
-    return bitfieldExtract(target, int(TERM_SHIFT), int(LIST_SHIFT - TERM_SHIFT));
+    return bitfieldExtract(target, SLOT_BITS, TERM_BITS);
+}
+
+uint target_vertices(uint target) {
+    return target >> (SLOT_BITS + TERM_BITS);
 }
 
 /// Terms in front of the filter vertex, or the sum of all.
