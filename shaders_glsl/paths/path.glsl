@@ -168,9 +168,8 @@ float emission_weight(Path path, float light_pdf) {
     if (path.delta || DIRECT == DIRECT_BSDF) {
         return 1.0;
     }
-    if (path.vertex == 1u && has_sole_ray(0u)) {
-        // 0 stays 0 where nothing else shines.
-        light_pdf /= max(1.0 - frame.sole_probability, 1e-3);
+    if (path.vertex == 1u && has_sole_ray(0u) && light_pdf > 0.0) {
+        light_pdf /= 1.0 - frame.sole_probability;
     }
     return DIRECT == DIRECT_NEE ? 0.0 : power_heuristic(path.pdf, competing_pdf(light_pdf));
 }
@@ -210,10 +209,15 @@ bool is_diffuse(HitPoint point) {
     return max_component(diffuse_albedo(point.surface)) > 0.0;
 }
 
-/// Light that may arrive at a vertex from a light.
-Pending pending_light(Path path, Terms terms, HitPoint point, ChosenLight light) {
+Pending no_light() {
     Pending pending;
     pending.ray = NO_RAY;
+    return pending;
+}
+
+/// Light that may arrive at a vertex from a light.
+Pending pending_light(Path path, Terms terms, HitPoint point, ChosenLight light) {
+    Pending pending = no_light();
     BsdfValue value = light.value;
     vec3 radiance = light.radiance;
     vec3 albedo = diffuse_albedo(point.surface);
@@ -238,24 +242,21 @@ Pending pending_light(Path path, Terms terms, HitPoint point, ChosenLight light)
 /// Looks for light at a vertex, by one of `rays` shadow rays; nothing waits where there is none to be found.
 Pending sample_direct(Path path, Terms terms, HitPoint point, vec3 wo, vec4 u, float selection, float rays) {
     ChosenLight light;
-    Pending pending;
-    pending.ray = NO_RAY;
-    if (choose_light(point.origin.position, point.surface, wo, u, selection, has_sole_ray(path.vertex), light)) {
-        light.radiance /= rays;
-        pending = pending_light(path, terms, point, light);
+    if (!choose_light(point.origin.position, point.surface, wo, u, selection, has_sole_ray(path.vertex), light)) {
+        return no_light();
     }
-    return pending;
+    light.radiance /= rays;
+    return pending_light(path, terms, point, light);
 }
 
 /// The sole light at the first vertex, in front of filters: it has no noise that they could take away.
 Pending sample_sole(Path path, Terms terms, HitPoint point, vec3 wo) {
     ChosenLight light;
-    Pending pending;
-    pending.ray = NO_RAY;
-    if (choose_sole_light(point.origin.position, point.surface, wo, light)) {
-        pending = pending_light(path, terms, point, light);
-        pending.term = TERM_BEFORE;
+    if (!choose_sole_light(point.origin.position, point.surface, wo, light)) {
+        return no_light();
     }
+    Pending pending = pending_light(path, terms, point, light);
+    pending.term = TERM_BEFORE;
     return pending;
 }
 

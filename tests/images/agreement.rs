@@ -37,9 +37,12 @@ fn light_sampling_bsdf_sampling_and_both_agree() {
     assert_switches_agree(&gpu, &builtin("cornell"), &settings(48, 32), &changes);
 }
 
+fn place(at: DVec3) -> Node {
+    Node { name: String::new(), parent: None, local: Local::Matrix(DMat4::from_translation(at)) }
+}
+
 /// 40 small triangles in rows before a wall, shining on it from as near as 10 cm, among 10 point lights further off.
 fn many_lights() -> Scene {
-    let place = |at: DVec3| Node { name: String::new(), parent: None, local: Local::Matrix(DMat4::from_translation(at)) };
     let lamp = Mesh {
         positions: vec![[-0.02, -0.02, 0.0], [0.0, 0.03, 0.0], [0.02, -0.02, 0.0]],
         normals: vec![[0.0, 0.0, -1.0]; 3],
@@ -117,8 +120,7 @@ fn a_sole_light_apart_takes_noise_from_the_picture_and_nothing_else() {
     let gpu = common::gpu();
     let mut scene = builtin("furnace");
     let node = scene.nodes.len() as u32;
-    let local = Local::Matrix(DMat4::from_translation(DVec3::new(0.5, 2.0, 3.0)));
-    scene.nodes.push(Node { name: String::new(), parent: None, local });
+    scene.nodes.push(place(DVec3::new(0.5, 2.0, 3.0)));
     scene.lights.push(Light { name: String::new(), node, color: [9.0, 8.0, 7.0], kind: LightKind::Point, range: None });
     let plain = settings(32, 32);
     let changes: [&[(&str, &str)]; 4] = [
@@ -134,12 +136,11 @@ fn a_sole_light_apart_takes_noise_from_the_picture_and_nothing_else() {
     assert!(apart < 0.95 * sampled, "{apart} instead of {sampled}");
 }
 
-/// Nothing but a point light above a smooth glossy floor: rays that leave the scene find nothing, whatever their density. And nhpsf, whose
-/// cells are of all vertices, takes no part of the light apart.
+/// Nothing but a point light above a floor: its light is the same, apart or chosen with certainty. And nhpsf, whose cells are of all vertices,
+/// takes no part of the light apart.
 #[test]
 fn a_light_that_is_all_there_is_may_be_apart() {
     let gpu = common::gpu();
-    let place = |at: DVec3| Node { name: String::new(), parent: None, local: Local::Matrix(DMat4::from_translation(at)) };
     let scene = Scene {
         meshes: vec![wall()],
         materials: vec![Material { roughness: 0.035, metallic: 0.5, ..Material::default() }],

@@ -5,6 +5,7 @@ use crate::common::render::{builtin, filtered, output, render_frames, set, setti
 use crate::common::{self, KernelOptions, run_kernel_with};
 use pathspace::display::Image;
 use pathspace::gpu::Gpu;
+use pathspace::metrics::{Pair, relmse};
 use pathspace::scene::Environment;
 use pathspace::technique::{Parameters, Renderer};
 use std::collections::BTreeMap;
@@ -159,11 +160,6 @@ fn constant_radiance_comes_out_as_halves_have_it() {
     }
 }
 
-fn relmse(image: &Image, truth: &Image) -> f64 {
-    let values = image.pixels.iter().flatten().zip(truth.pixels.iter().flatten()).map(|(&a, &b)| (f64::from(a), f64::from(b)));
-    values.map(|(a, b)| (a - b).powi(2) / (b * b + 0.01)).sum::<f64>() / (3 * truth.pixels.len()) as f64
-}
-
 /// Of a picture and what it is over, after so many frames more.
 fn picture_after(renderer: &mut Renderer, frames: u32) -> (Image, Vec<f64>) {
     (0..frames).for_each(|_| renderer.render_frame().unwrap());
@@ -189,7 +185,7 @@ fn pictures_of_both_precisions_agree() {
         let mut first = Vec::new();
         for frames in [16, later] {
             let [(exact, of), (rounded, of_rounded)] = [&mut wide, &mut narrow].map(|renderer| picture_after(renderer, frames));
-            let error = relmse(&rounded, &exact);
+            let error = relmse(&Pair::new(&rounded, &exact).unwrap(), 0.0);
             assert!(error > 0.0 && error < 2e-5, "{technique}, {frames} frames more: {error}");
             let samples = of_rounded.iter().sum::<f64>() / of.iter().sum::<f64>();
             let chance = chance_of_counts(&of);

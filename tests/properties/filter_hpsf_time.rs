@@ -7,6 +7,7 @@ use glam::DVec3;
 use pathspace::display::Image;
 use pathspace::gpu::Gpu;
 use pathspace::metrics::statistics::BatchMeans;
+use pathspace::metrics::{Pair, relmse};
 use pathspace::scene::animation::{Animation, Channel, Interpolation, Keys};
 use pathspace::scene::{Instance, Light, LightKind, Material, Mesh, Scene};
 use pathspace::technique::{Renderer, Settings};
@@ -261,7 +262,7 @@ fn relmse_of_seeds(gpu: &Gpu, values: &[(&str, &str)], truth: &Image, seeds: u32
         let mut error = |&frame: &u32| {
             (renderer.frame()..frame).for_each(|_| renderer.render_frame().unwrap());
             renderer.finish().unwrap();
-            relmse(&renderer.picture().unwrap(), truth)
+            relmse(&Pair::new(&renderer.picture().unwrap(), truth).unwrap(), 0.0)
         };
         frames.iter().map(&mut error).collect()
     };
@@ -272,11 +273,6 @@ fn relmse_of_seeds(gpu: &Gpu, values: &[(&str, &str)], truth: &Image, seeds: u32
 fn relmse_after(gpu: &Gpu, values: &[(&str, &str)], truth: &Image, seeds: u32, frames: &[u32]) -> Vec<f64> {
     let of_seeds = relmse_of_seeds(gpu, values, truth, seeds, frames);
     (0..frames.len()).map(|i| of_seeds.iter().map(|errors| errors[i]).sum::<f64>() / f64::from(seeds)).collect()
-}
-
-fn relmse(image: &Image, truth: &Image) -> f64 {
-    let values = image.pixels.iter().flatten().zip(truth.pixels.iter().flatten()).map(|(&a, &b)| (f64::from(a), f64::from(b)));
-    values.map(|(a, b)| (a - b).powi(2) / (b * b + 0.01)).sum::<f64>() / (3 * truth.pixels.len()) as f64
 }
 
 /// What paths through the pixels' centres find on average.

@@ -84,7 +84,7 @@ fn the_report_draws_in_light_and_dark() {
     assert!(means[0] > 200.0 && means[1] < 80.0, "mean of the page in light and dark: {means:?} of 255");
 }
 
-/// Sheets of A4 without margins are this wide in CSS pixels; browsers scale what is wider down to 0.6 or so, but no further.
+/// Width of A4 in CSS pixels.
 const SHEET: u32 = 794;
 
 #[test]
