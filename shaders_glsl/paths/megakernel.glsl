@@ -43,7 +43,11 @@ Path field_path(Field field, uvec2 pixel, uint sampled) {
         pixel = retraced_pixel(pixel, sample_index);
     }
 #endif
-    return path_from(camera, jitter, pixel, sample_index);
+    Path path = path_from(camera, jitter, pixel, sample_index);
+#ifdef RETRACES
+    path.first_rays = field.retraced ? frame.previous_first_rays : parameters.first_shadow_rays;
+#endif
+    return path;
 }
 
 /// The thread's pixel in tile `turn` or the first one after it that lies in the field; false where there is none.

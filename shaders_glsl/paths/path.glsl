@@ -25,10 +25,11 @@
 
 /// Pairs of sample dimensions that a vertex takes: light, point on it, direction, lobe and roulette.
 const uint PAIRS_PER_VERTEX = 4u;
-/// Where those of further shadow rays at the first vertex begin: behind the deepest path's.
-const uint EXTRA_PAIRS = 1u + PAIRS_PER_VERTEX * 66u;
-/// And those that select among candidate lights: behind these, 16 for each vertex.
-const uint SELECTION_PAIRS = EXTRA_PAIRS + 2u * 16u;
+/// Where those begin that select among candidate lights: behind the deepest path's, 16 for each vertex.
+const uint SELECTION_PAIRS = 1u + PAIRS_PER_VERTEX * 66u;
+/// And those of further shadow rays at the first vertex: behind these, light, point on it and selection.
+const uint EXTRA_PAIRS = SELECTION_PAIRS + 16u * 66u;
+const uint PAIRS_PER_EXTRA_RAY = 3u;
 
 const uint NO_VERTEX = ~0u;
 
@@ -57,6 +58,10 @@ struct Path {
     /// Length of all rays that have arrived, metres.
     float travelled;
     Sampler numbers;
+#ifdef RETRACES
+    /// Shadow rays at the first vertex, in the frame that the path is of.
+    uint first_rays;
+#endif
 #ifdef VERTEX_LIST
     /// Of the pixel in the list of vertices.
     uint place;
@@ -151,6 +156,15 @@ Path path_begin(uvec2 pixel, uint sample_index) {
 /// The same holes for everything that one ray of one sample sees, others for the next.
 uint alpha_seed(Path path) {
     return EFFECT_ALPHA_BLEND ? pcg3d(uvec3(path.numbers.scramble, path.numbers.index, path.vertex)).x : 0u;
+}
+
+/// Shadow rays at the path's first vertex, without the sole light's.
+uint first_shadow_rays(Path path) {
+#ifdef RETRACES
+    return path.first_rays;
+#else
+    return parameters.first_shadow_rays;
+#endif
 }
 
 /// The sole light has a shadow ray of its own where the camera's ray arrives (lights.sole).
@@ -405,19 +419,20 @@ bool visit(inout Path path, Hit hit, bool arrives, inout uint shadow_rays, inout
         return false;
     }
     if (arrives && has_sole_ray(path.vertex)) {
-        shadow_rays = parameters.first_shadow_rays;
+        shadow_rays = first_shadow_rays(path);
         pending = sample_sole(path, terms, point, wo);
         pending.alpha_seed = alpha_seed(path) + 1u + shadow_rays;
         return true;
     }
-    uint rays = path.vertex == 0u ? parameters.first_shadow_rays : 1u;
+    uint rays = path.vertex == 0u ? first_shadow_rays(path) : 1u;
     shadow_rays = (arrives ? rays : shadow_rays) - 1u;
     bool first = shadow_rays == rays - 1u;
-    path.numbers.dimension = first ? 1u + PAIRS_PER_VERTEX * path.vertex : EXTRA_PAIRS + 2u * shadow_rays;
+    uint extra = EXTRA_PAIRS + PAIRS_PER_EXTRA_RAY * shadow_rays;
+    path.numbers.dimension = first ? 1u + PAIRS_PER_VERTEX * path.vertex : extra;
     vec4 light;
     light.xy = sample_2d(path.numbers);
     light.zw = sample_2d(path.numbers);
-    path.numbers.dimension = SELECTION_PAIRS + 16u * path.vertex + shadow_rays;
+    path.numbers.dimension = first ? SELECTION_PAIRS + 16u * path.vertex : extra + 2u;
     pending = sample_direct(path, terms, point, wo, light, sample_1d(path.numbers), float(rays));
     pending.alpha_seed = alpha_seed(path) + 1u + shadow_rays;
     if (shadow_rays > 0u) {

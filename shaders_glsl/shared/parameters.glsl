@@ -128,8 +128,8 @@ struct Parameters {
     //@ paths.roulette_start 3 0..64 bounces
     /// First bounce at which Russian roulette may end a path.
     uint roulette_start;
-    //@ rays.first_shadow_rays 1 1..16 rays
-    /// Shadow rays at the primary hit; every later vertex sends one.
+    //@ rays.first_shadow_rays 1 1..64 rays
+    /// Shadow rays at the primary hit; every later vertex sends one. More: less noise of direct light, at a ray and a BSDF each.
     uint first_shadow_rays;
     //@ lights.candidates 16 1..64 lights
     /// Lights drawn by power for each shadow ray, which goes to one of them in proportion to what it would bring unshadowed; at most one for

@@ -215,6 +215,9 @@ struct FrameData {
     ivec3 origin_steps;
     /// Of this frame's rounds, the number of this one, from 0.
     uint round;
+    /// rays.first_shadow_rays of the round before.
+    uint previous_first_rays;
+    uint padding;
 };
 
 #endif

@@ -9,13 +9,16 @@ use super::shots::Shots;
 use super::suite::Values;
 use crate::gpu::Gpu;
 use crate::scene::Scene;
-use crate::technique::{REGISTRY, Renderer, Settings, Technique};
+use crate::technique::{MOST_SHADOW_RAYS, REGISTRY, Renderer, Settings, Technique, Work};
 use std::path::PathBuf;
 
 /// Pixels that a calibration renders: enough for stable times, few enough for a minute.
 const PIXELS: f64 = 160.0 * 90.0;
-/// Samples per pixel that are measured of techniques that take several.
+/// Samples per pixel that are measured; the last of those that go in rounds.
 const SAMPLES: [u32; 3] = [1, 2, 8];
+const ROUNDS: [u32; 2] = [1, 4];
+/// And one round with so many times the shadow rays at the first vertex.
+const TIMES_THE_RAYS: u32 = 16;
 /// Of techniques that remember: what a picture looks like once they have.
 const FRAMES: u32 = 8;
 const SEEDS: [u32; 2] = [1, 2];
@@ -57,28 +60,42 @@ impl Calibration<'_> {
             Settings { extent: size, technique: reference(), parameters: self.with_user_values(reference()), ..self.settings.clone() };
         let subject = Subject { gpu: self.gpu, scene: self.scene, settings: &truth, frame: 0 };
         let reference = ReferenceCache::open().reference(&subject, self.reference_samples(&truth)?)?;
-        let samples = |technique: &'static Technique| {
-            SAMPLES.into_iter().filter(|&spp| spp <= technique.most_at_once()).map(move |spp| (technique, spp))
-        };
-        let all: Vec<(&Technique, u32)> = REGISTRY.iter().flat_map(samples).collect();
+        let all: Vec<(&Technique, Work)> =
+            REGISTRY.iter().flat_map(|technique| self.works(technique).into_iter().map(move |work| (technique, work))).collect();
         let mut candidates = Vec::new();
-        for (done, &(technique, spp)) in all.iter().enumerate() {
+        for (done, &(technique, work)) in all.iter().enumerate() {
             progress(done, all.len());
+            let spp = work.samples as u32;
             let point = self.point(technique, spp, size);
-            let parameters = self.with_user_values(technique);
+            let mut parameters = self.with_user_values(technique);
+            parameters.set("rays.first_shadow_rays", &work.first_shadow_rays.to_string()).expect("it is within its range");
             let settings = Settings { technique, spp, parameters, ..truth.clone() };
             let shots = Shots::take(self.gpu, self.scene, &settings, &point, 1, &SEEDS)?;
             candidates.push(Candidate {
                 technique: technique.name.to_owned(),
-                settings: Values::new(),
-                spp,
-                most_spp: technique.most_at_once(),
+                rounds: technique.rounds,
+                work,
                 ns_per_pixel: shots.timings.frame_ms_median * 1e6 / f64::from(size[0] * size[1]),
                 flip: accuracy::mean_flip(&shots.last, &reference)?,
             });
         }
         candidates.retain(|candidate| candidate.ns_per_pixel.is_finite() && candidate.flip.is_finite());
         Ok(Front { version: VERSION, candidates })
+    }
+
+    /// What is measured of a technique.
+    fn works(&self, technique: &Technique) -> Vec<Work> {
+        let parameters = self.with_user_values(technique);
+        let rays = parameters.number("rays.first_shadow_rays") as u32;
+        let with_samples = |&samples: &u32| Work { samples: f64::from(samples), first_shadow_rays: rays };
+        if !technique.rounds {
+            return SAMPLES.iter().map(with_samples).collect();
+        }
+        let more_rays = (rays * TIMES_THE_RAYS).min(MOST_SHADOW_RAYS);
+        // The wavefront's passes are as many as the settings' shadow rays.
+        let more_rays = (more_rays > rays && parameters.number("paths.kernel") == 0.0).then_some(more_rays);
+        let more_rays = more_rays.map(|rays| Work { samples: 1.0, first_shadow_rays: rays });
+        ROUNDS.iter().map(with_samples).chain(more_rays).collect()
     }
 
     fn reference_samples(&self, truth: &Settings) -> Result<u64, BenchError> {

@@ -14,12 +14,14 @@ mod settings;
 mod sspsf;
 mod timings;
 mod unfiltered;
+mod work;
 
 pub use governor::Governor;
 pub use parameters::{ParameterError, Parameters};
 pub use renderer::Renderer;
 pub use settings::{RenderError, Settings, ViewChoice};
 pub use timings::{BuildTimes, MemoryUse, PassTime, RayCounts, Timings};
+pub use work::{MOST_SHADOW_RAYS, Scale, Work};
 
 use crate::display::rounds;
 use crate::frame::{FrameBuilder, ImageHandle};
@@ -48,11 +50,6 @@ pub struct Technique {
 }
 
 impl Technique {
-    /// Samples per pixel that its passes take; what is asked for beyond goes in rounds, and is not chosen where only a budget is given.
-    pub fn most_at_once(&self) -> u32 {
-        if self.rounds { 1 } else { u32::MAX }
-    }
-
     /// Puts right what it takes no other value of, with a warning.
     fn fix(&self, parameters: &mut Parameters) {
         for (key, value) in self.fixed {

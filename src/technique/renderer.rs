@@ -4,6 +4,7 @@ use super::PassOptions;
 use super::prepared::PreparedScene;
 use super::settings::{RenderError, Settings};
 use super::timings::{Clock, MemoryUse, RayCounts, Recorder, Timings};
+use super::work::{MOST_SHADOW_RAYS, Work};
 use crate::display;
 use crate::frame::{FrameBuilder, FrameGraph, Globals, GlobalsInfo, ImageHandle, Share, shares};
 use crate::gpu::{DescriptorSet, FrameRing, Gpu, Image, Timer, vk};
@@ -33,8 +34,10 @@ pub struct Renderer {
     round: u32,
     /// Frame of the animation that frame 0 shows.
     first_frame: u32,
-    /// Of each round of the frame to come; at least 1.
+    /// Per pixel of the frame to come; at least 1.
     samples: f64,
+    /// `rays.first_shadow_rays` of the last round.
+    previous_first_rays: u32,
     /// Samples per pixel that earlier frames have taken of the sequence.
     first_sample: u32,
     gpu: Gpu,
@@ -72,7 +75,8 @@ impl Renderer {
             frame: 0,
             round: 0,
             first_frame: 0,
-            samples: f64::from(settings.spp.min(technique.most_at_once())),
+            samples: f64::from(settings.spp),
+            previous_first_rays: settings.parameters.fields().first_shadow_rays,
             first_sample: 0,
             gpu: gpu.clone(),
             graph,
@@ -98,9 +102,9 @@ impl Renderer {
     /// The device is lost.
     pub fn render_frame_telling(&mut self, mut progress: impl FnMut(f64)) -> Result<(), RenderError> {
         let mut cpu_ms = 0.0;
-        let (rounds, samples) = (self.rounds(), self.samples.ceil());
+        let (rounds, samples) = (self.rounds(), self.samples_at_once().ceil());
         for round in 0..rounds {
-            for share in shares(self.samples, self.most_samples_at_once()) {
+            for share in shares(self.samples_at_once(), self.most_samples_at_once()) {
                 let slot = self.ring.acquire()?;
                 self.collect(slot);
                 let mut clock = Clock::start();
@@ -113,6 +117,7 @@ impl Renderer {
                 progress((f64::from(round) + f64::from(share.end) / samples) / f64::from(rounds));
             }
             self.first_sample = self.first_sample.wrapping_add(samples as u32);
+            self.previous_first_rays = self.parameters.first_shadow_rays;
             self.round += 1;
         }
         self.recorder.add_cpu(cpu_ms);
@@ -122,7 +127,12 @@ impl Renderer {
 
     /// Of a frame.
     fn rounds(&self) -> u32 {
-        if self.settings.technique.rounds { self.settings.spp } else { 1 }
+        if self.settings.technique.rounds { self.samples as u32 } else { 1 }
+    }
+
+    /// Per pixel of a round.
+    fn samples_at_once(&self) -> f64 {
+        if self.settings.technique.rounds { 1.0 } else { self.samples }
     }
 
     fn most_samples_at_once(&self) -> u32 {
@@ -159,10 +169,24 @@ impl Renderer {
         Ok(())
     }
 
-    /// Samples per pixel of the frames to come, at least 1; of a fraction, so many pixels take one more. Where they go in rounds, these stay as
-    /// many as they are.
-    pub fn set_samples(&mut self, samples: f64) {
-        self.samples = samples.clamp(1.0, f64::from(self.settings.technique.most_at_once()));
+    /// What frames to come do. Samples per pixel, at least 1: of a fraction, so many pixels take one more; where they go in rounds, whole ones,
+    /// and no more than the settings say. Shadow rays: the wavefront sends those that the settings say.
+    pub fn set_work(&mut self, work: Work) {
+        let Settings { technique, spp, parameters, .. } = &self.settings;
+        let most = if technique.rounds { f64::from(*spp) } else { f64::INFINITY };
+        self.samples = work.samples.clamp(1.0, most);
+        if parameters.number("paths.kernel") == 0.0 {
+            self.parameters.first_shadow_rays = work.first_shadow_rays.clamp(1, MOST_SHADOW_RAYS);
+        }
+    }
+
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Per pixel, of the frame to come.
+    pub fn samples(&self) -> f64 {
+        self.samples
     }
 
     /// Waits for all frames.
@@ -253,8 +277,9 @@ impl Renderer {
             first_sample: self.first_sample,
             jitter: self.jitter(self.round),
             previous_jitter: self.jitter(self.round.saturating_sub(1)),
-            samples: self.samples as u32,
-            more_samples: self.samples.fract() as f32,
+            samples: self.samples_at_once() as u32,
+            more_samples: self.samples_at_once().fract() as f32,
+            previous_first_rays: self.previous_first_rays,
             share_begin: share.begin,
             share_end: share.end,
             log2_origin_step,

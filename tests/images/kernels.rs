@@ -4,7 +4,7 @@ use crate::common::render::{builtin, output, render, set, settings, wall};
 use crate::common::{self, TestGpu};
 use glam::{DMat4, DVec3};
 use pathspace::scene::{AlphaMode, CameraView, Environment, Instance, Light, LightKind, Local, Material, Node, Scene};
-use pathspace::technique::{self, Renderer, Settings, ViewChoice};
+use pathspace::technique::{self, Renderer, Settings, ViewChoice, Work};
 
 /// Where a technique's paths make lists of vertices.
 const OF_LISTS: [&str; 2] = ["path_vertices", "specular_attenuation"];
@@ -14,7 +14,7 @@ fn outputs(gpu: &TestGpu, scene: &Scene, settings: &Settings, kernel: &str, samp
     let mut settings = settings.clone();
     set(&mut settings, &[("paths.kernel", kernel)]);
     let mut renderer = Renderer::new(gpu, scene.clone(), settings.clone()).unwrap();
-    renderer.set_samples(samples);
+    renderer.set_work(Work { samples, first_shadow_rays: settings.parameters.number("rays.first_shadow_rays") as u32 });
     let makes_lists = settings.technique.name == "nhpsf" || settings.parameters.number("hpsf.second") == 1.0;
     (0..if makes_lists { 4 } else { 2 }).for_each(|_| renderer.render_frame().unwrap());
     renderer.finish().unwrap();

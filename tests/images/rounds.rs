@@ -3,9 +3,10 @@
 use crate::common;
 use crate::common::render::{builtin, render_frames, settings};
 use pathspace::display::Image;
+use pathspace::technique::{self, Renderer, Settings, Work};
 
 fn picture(scene: &str, technique: &str, spp: u32, frames: u32) -> Image {
-    let settings = pathspace::technique::Settings { spp, ..settings(48, 27) };
+    let settings = Settings { spp, ..settings(48, 27) };
     render_frames(&common::gpu(), &builtin(scene), &settings, technique, frames).picture().unwrap()
 }
 
@@ -34,11 +35,30 @@ fn rounds_join_what_earlier_frames_know() {
     assert!(agree(&picture("cornell", "hpsf+", 2, 2), &picture("cornell", "hpsf+", 1, 4)));
 }
 
+/// A budget changes them from frame to frame, up to as many as the frame was made for.
+#[test]
+fn a_frame_takes_as_many_rounds_as_it_is_asked_for() {
+    let settings = Settings { spp: 2, technique: technique::find("hpsf").unwrap(), ..settings(48, 27) };
+    let mut renderer = Renderer::new(&common::gpu(), builtin("cornell"), settings).unwrap();
+    let mut picture_of = |samples| {
+        renderer.set_work(Work { samples, first_shadow_rays: 1 });
+        renderer.render_frame().unwrap();
+        renderer.picture().unwrap()
+    };
+    let [one, two, again] = [1.0, 9.0, 1.9].map(&mut picture_of);
+    let frames = [1, 2, 3, 4].map(|frames| picture("cornell", "hpsf", 1, frames));
+    let mut mean = frames[1].clone();
+    for (pixel, other) in mean.pixels.iter_mut().zip(&frames[2].pixels) {
+        *pixel = [0, 1, 2].map(|channel| 0.5 * (pixel[channel] + other[channel]));
+    }
+    assert!(agree(&one, &frames[0]) && agree(&two, &mean) && agree(&again, &frames[3]));
+}
+
 /// The second round shows the time of the first: what moves by a frame stands still in between.
 #[test]
 fn the_rounds_of_a_frame_show_one_time() {
     let seen = |spp| {
-        let settings = pathspace::technique::Settings { spp, ..settings(48, 27) };
+        let settings = Settings { spp, ..settings(48, 27) };
         let renderer = render_frames(&common::gpu(), &builtin("cornell-object"), &settings, "unfiltered", 3);
         ["motion", "position"].map(|name| renderer.output(name).unwrap().expect("it is put out"))
     };

@@ -10,7 +10,7 @@ use pathspace::metrics::statistics::BatchMeans;
 use pathspace::metrics::{Pair, relmse};
 use pathspace::scene::animation::{Animation, Channel, Interpolation, Keys};
 use pathspace::scene::{Instance, Light, LightKind, Material, Mesh, Scene};
-use pathspace::technique::{Renderer, Settings};
+use pathspace::technique::{Renderer, Settings, Work};
 
 fn with(values: &[(&str, &str)]) -> Settings {
     let mut settings = settings(64, 36);
@@ -51,6 +51,24 @@ fn a_moving_camera_makes_nothing_forget() {
     let renderer = render_frames(&gpu, &scene, &settings, "hpsf", 4);
     assert!(output(&renderer, "retraced_ray_count").pixels.iter().any(|pixel| pixel[0] > 0.0));
     assert!(output(&renderer, "hpsf_change").pixels.iter().all(|pixel| pixel[0] == 0.0));
+}
+
+/// Nor what a budget asks of a frame: a path of the last frame is retraced with the shadow rays that it had.
+#[test]
+fn more_shadow_rays_than_in_the_last_frame_make_nothing_forget() {
+    let gpu = common::gpu();
+    let mut settings = with(&[("hpsf.time", "hybrid"), ("hpsf.retrace", "2")]);
+    settings.all_effects = true;
+    settings.technique = pathspace::technique::find("hpsf").unwrap();
+    settings.spp = 2;
+    let mut renderer = Renderer::new(&gpu, builtin("cornell"), settings).unwrap();
+    for (samples, first_shadow_rays) in [(1.0, 1), (1.0, 3), (2.0, 2), (1.0, 20)] {
+        renderer.set_work(Work { samples, first_shadow_rays });
+        renderer.render_frame().unwrap();
+        let change = renderer.output("hpsf_change").unwrap().unwrap();
+        assert!(change.pixels.iter().all(|pixel| pixel[0] == 0.0), "{samples} {first_shadow_rays}");
+    }
+    assert!(output(&renderer, "retraced_ray_count").pixels.iter().any(|pixel| pixel[0] > 0.0));
 }
 
 const FRAMES_PER_SECOND: f64 = 30.0;
