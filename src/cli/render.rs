@@ -156,7 +156,7 @@ pub fn run(args: &Args) -> anyhow::Result<Outcome> {
         renderer.restart(args.seed, args.first_frame)?;
     }
     render_frames(&mut renderer, frames, args.size, spp, budget.as_mut())?;
-    args.write(&mut renderer, spp, frames)?;
+    args.write(&mut renderer, frames)?;
     if let Some(outcome) = budget.map(|budget| renderer.timings().map(|timings| budget.outcome(&timings))).transpose()?.flatten() {
         print_result(&outcome)?;
     }
@@ -238,11 +238,11 @@ impl Args {
         Ok(ViewChoice::Fixed(CameraView::look_at(place(eye), place(target), self.vfov.unwrap_or(45.0).to_radians())))
     }
 
-    fn write(&self, renderer: &mut Renderer, spp: u32, frames: u32) -> anyhow::Result<()> {
+    fn write(&self, renderer: &mut Renderer, frames: u32) -> anyhow::Result<()> {
         let attributes = [
             ("scene", self.scene.clone()),
-            ("technique", self.technique.clone()),
-            ("spp", spp.to_string()),
+            ("technique", renderer.settings().technique.name.to_owned()),
+            ("spp", renderer.samples().to_string()),
             ("frames", frames.to_string()),
             ("seed", self.seed.to_string()),
         ];
