@@ -12,18 +12,22 @@ use crate::scene::Scene;
 use crate::technique::{MOST_SHADOW_RAYS, REGISTRY, Renderer, Settings, Technique, Work};
 use std::path::PathBuf;
 
-/// Pixels that a calibration renders: enough for stable times, few enough for a minute.
-const PIXELS: f64 = 160.0 * 90.0;
+/// Pixels that a calibration renders: as many as the reference takes so long for with one sample, so that all is done in a minute or a few,
+/// within bounds: with fewer than these a filter's footprint is as large as the things in the picture.
+const FRAME_MS: f64 = 40.0;
+const FEWEST_PIXELS: f64 = 80.0 * 45.0;
+/// And those that the time is taken with.
+const PROBE_PIXELS: f64 = 160.0 * 90.0;
 /// Samples per pixel that are measured; the last of those that go in rounds.
-const SAMPLES: [u32; 3] = [1, 2, 8];
-const ROUNDS: [u32; 2] = [1, 4];
+const SAMPLES: [u32; 2] = [1, 4];
+const ROUNDS: [u32; 2] = [1, 3];
 /// And one round with so many times the shadow rays at the first vertex.
 const TIMES_THE_RAYS: u32 = 16;
 /// Of techniques that remember: what a picture looks like once they have.
 const FRAMES: u32 = 8;
 const SEEDS: [u32; 2] = [1, 2];
 /// Of the reference: as many as so much time allows, within bounds.
-const REFERENCE_MS: f64 = 20_000.0;
+const REFERENCE_MS: f64 = 15_000.0;
 const REFERENCE_SAMPLES: [f64; 2] = [64.0, 512.0];
 
 /// What is calibrated.
@@ -55,11 +59,15 @@ impl Calibration<'_> {
     }
 
     fn measure(&self, progress: &mut dyn FnMut(usize, usize)) -> Result<Front, BenchError> {
-        let size = self.size();
-        let truth =
-            Settings { extent: size, technique: reference(), parameters: self.with_user_values(reference()), ..self.settings.clone() };
+        let parameters = self.with_user_values(reference());
+        let probe = Settings { extent: self.size(PROBE_PIXELS), technique: reference(), parameters, ..self.settings.clone() };
+        let ms_per_pixel = self.ms_per_pixel(&probe)?;
+        let size = self.size((FRAME_MS / ms_per_pixel).max(FEWEST_PIXELS));
+        let truth = Settings { extent: size, ..probe };
+        let [least, most] = REFERENCE_SAMPLES;
+        let samples = (REFERENCE_MS / (ms_per_pixel * f64::from(size[0] * size[1]))).clamp(least, most) as u64;
         let subject = Subject { gpu: self.gpu, scene: self.scene, settings: &truth, frame: 0 };
-        let reference = ReferenceCache::open().reference(&subject, self.reference_samples(&truth)?)?;
+        let reference = ReferenceCache::open().reference(&subject, samples)?;
         let all: Vec<(&Technique, Work)> =
             REGISTRY.iter().flat_map(|technique| self.works(technique).into_iter().map(move |work| (technique, work))).collect();
         let mut candidates = Vec::new();
@@ -98,17 +106,18 @@ impl Calibration<'_> {
         ROUNDS.iter().map(with_samples).chain(more_rays).collect()
     }
 
-    fn reference_samples(&self, truth: &Settings) -> Result<u64, BenchError> {
-        let mut renderer = Renderer::new(self.gpu, self.scene.clone(), Settings { spp: 1, ..truth.clone() })?;
+    /// What one sample takes; above 0.
+    fn ms_per_pixel(&self, probe: &Settings) -> Result<f64, BenchError> {
+        let mut renderer = Renderer::new(self.gpu, self.scene.clone(), Settings { spp: 1, ..probe.clone() })?;
         (0..3).try_for_each(|_| renderer.render_frame())?;
-        let [least, most] = REFERENCE_SAMPLES;
-        Ok((REFERENCE_MS / renderer.timings()?.frame_ms_median).clamp(least, most) as u64)
+        let ms = renderer.timings()?.frame_ms_median;
+        Ok(ms.max(1e-3) / f64::from(probe.extent[0] * probe.extent[1]))
     }
 
-    /// The picture's shape at [`PIXELS`], or the picture's own size where that is smaller.
-    fn size(&self) -> [u32; 2] {
+    /// The picture's shape with so many pixels, or the picture's own size where that is smaller.
+    fn size(&self, pixels: f64) -> [u32; 2] {
         let [width, height] = self.settings.extent.map(f64::from);
-        let scale = (PIXELS / (width * height)).sqrt().min(1.0);
+        let scale = (pixels / (width * height)).sqrt().min(1.0);
         [width, height].map(|side| ((side * scale).round() as u32).max(11))
     }
 
@@ -133,10 +142,9 @@ impl Calibration<'_> {
         }
     }
 
-    /// Under a hash of scene, view, shape, parameters, device, driver and program.
+    /// Under a hash of scene, view, size, parameters, device, driver and program.
     fn path(&self) -> Result<Option<PathBuf>, BenchError> {
-        let settings = Settings { extent: self.size(), ..self.settings.clone() };
-        let subject = Subject { gpu: self.gpu, scene: self.scene, settings: &settings, frame: 0 };
+        let subject = Subject { gpu: self.gpu, scene: self.scene, settings: self.settings, frame: 0 };
         let device = self.gpu.capabilities();
         let text = format!("{} {} {} {} {}", subject.key()?, device.name, device.driver, self.settings.trace, env!("PATHSPACE_COMMIT"));
         let name = format!("{}.json", &blake3::hash(text.as_bytes()).to_hex()[..32]);
