@@ -23,7 +23,7 @@ layout(set = 1, binding = 6, r32f) writeonly uniform image2D temporal_depth;
 
 /// Relative change of what a pixel's vertex sends, 0..1.
 layout(set = 1, binding = 7, r32f) readonly uniform image2D change;
-/// w: above 0 where there is a vertex.
+/// w: 0 where there is no vertex, and below it where what is seen is a light.
 layout(set = 1, binding = 8, rgba32f) readonly uniform image2D vertices;
 
 layout(constant_id = 234) const bool KNOWS_CHANGES = false;
@@ -45,9 +45,16 @@ struct Surroundings {
     bool changes;
 };
 
-/// Unless retraced paths say that it has not, or nothing is there.
-bool changed(ivec2 pixel, float depth) {
-    return depth != MISS && (imageLoad(change, pixel).x > 0.0 || !(imageLoad(vertices, pixel).w > 0.0));
+/// What a pixel's sample says of it: a path that has met no vertex says nothing, unless it has left the scene or met a light at once.
+const uint SAYS_NOTHING = 0u;
+const uint SAYS_UNCHANGED = 1u;
+const uint SAYS_CHANGED = 2u;
+
+uint said_of_changes(ivec2 pixel, float depth) {
+    if (depth != MISS && imageLoad(vertices, pixel).w == 0.0) {
+        return SAYS_NOTHING;
+    }
+    return depth != MISS && imageLoad(change, pixel).x > 0.0 ? SAYS_CHANGED : SAYS_UNCHANGED;
 }
 
 Surroundings look_around(ivec2 pixel) {
@@ -55,7 +62,8 @@ Surroundings look_around(ivec2 pixel) {
     ivec2 high = min(pixel + 1, ivec2(frame.extent) - 1);
     vec3 sum = vec3(0.0);
     vec3 squares = vec3(0.0);
-    Surroundings around = Surroundings(vec3(0.0), vec3(0.0), MISS, -MISS, vec2(MISS), vec2(-MISS), EFFECT_OBJECT_ANIMATION && !KNOWS_CHANGES);
+    Surroundings around = Surroundings(vec3(0.0), vec3(0.0), MISS, -MISS, vec2(MISS), vec2(-MISS), EFFECT_OBJECT_ANIMATION);
+    uint said = SAYS_NOTHING;
     for (int y = low.y; y <= high.y; y++) {
         for (int x = low.x; x <= high.x; x++) {
             vec3 value = imageLoad(radiance, ivec2(x, y)).rgb;
@@ -68,10 +76,11 @@ Surroundings look_around(ivec2 pixel) {
             around.slowest = min(around.slowest, moves);
             around.fastest = max(around.fastest, moves);
             if (EFFECT_OBJECT_ANIMATION && KNOWS_CHANGES) {
-                around.changes = around.changes || changed(ivec2(x, y), depth);
+                said = max(said, said_of_changes(ivec2(x, y), depth));
             }
         }
     }
+    around.changes = around.changes && said != SAYS_UNCHANGED;
     ivec2 size = high - low + 1;
     float count = float(size.x * size.y);
     around.mean = sum / count;

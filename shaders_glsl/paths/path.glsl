@@ -366,6 +366,7 @@ bool arrive(inout Path path, Hit hit, inout HitPoint point, inout Terms terms) {
         return false;
     }
     if (any(greaterThan(point.emission, vec3(0.0)))) {
+        terms.vertex.travelled = path.vertex == 0u ? EMITS : terms.vertex.travelled;
         float light_pdf;
         triangle_light_pdf(hit.instance, hit.primitive, path.ray.direction, hit.t, light_pdf);
         add_emission(path, point.emission, light_pdf, terms);
@@ -405,11 +406,26 @@ bool follow(inout Path path, bool found, Hit hit, inout Terms terms) {
     return true;
 }
 
+/// Path space regularization, Kaplanyan and Dachsbacher 2013: seen from a diffuse vertex, a narrow lobe that hardly any ray finds is as good as
+/// a wider one that many find. Mirrors and glass stay as they are, for what they send on is found by no shadow ray, and would come on top.
+void regularize(inout Surface s) {
+    float alpha = parameters.regularized_roughness * parameters.regularized_roughness;
+    if (reflects(s) && !reflection_is_delta(s) && glass_part(s) == 0.0) {
+        s.alpha = max(s.alpha, alpha);
+    }
+    if (s.clearcoat > 0.0 && !clearcoat_is_delta(s)) {
+        s.clearcoat_alpha = max(s.clearcoat_alpha, alpha);
+    }
+}
+
 /// One visit to the vertex that the path's ray has hit, for one shadow ray, `pending`; `shadow_rays`: that are left to send after it. The last
 /// visit chooses the next ray. False where the path ends.
 bool visit(inout Path path, Hit hit, bool arrives, inout uint shadow_rays, inout Terms terms, inout Pending pending) {
     vec3 wo = -path.ray.direction;
     HitPoint point = hit_point(hit, path.ray.direction, path.cone);
+    if (!is_in_front(path) && path.vertex > path.filter_vertex) {
+        regularize(point.surface);
+    }
 #ifdef VERTEX_LIST
     if (!arrives && path.filter_vertex == path.vertex && vertices_behind(terms) > 0u) {
         point.surface.part = PART_DIFFUSE;

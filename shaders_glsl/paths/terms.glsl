@@ -30,11 +30,13 @@ struct FilterVertex {
     vec3 normal;
     /// Unit, the way the path arrives.
     vec3 incident;
-    /// Length of the path up to it, metres; 0 where there is none.
+    /// Length of the path up to it, metres; 0 where there is none, EMITS where there is none and what the camera sees is a light.
     float travelled;
     /// Of its other lobes (lib/layer.glsl), where the specular terms may be filtered; else 0.
     uint layer;
 };
+
+const float EMITS = -1.0;
 
 struct Terms {
     vec3 before;

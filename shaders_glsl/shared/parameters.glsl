@@ -141,6 +141,9 @@ struct Parameters {
     //@ paths.clamp 0 0..1000000 W/(sr*m^2)
     /// Largest radiance that one indirect contribution may carry; 0: no clamp. Darkens, and removes fireflies.
     float clamp_radiance;
+    //@ paths.regularize 0 0..1 roughness
+    /// Least roughness of what a path meets behind its first diffuse vertex, but for mirrors and glass (Kaplanyan and Dachsbacher 2013); 0: none. More: caustics blur and lose their fireflies, where filters would make spots of these.
+    float regularized_roughness;
     //@ textures.lod_bias 0 -8..8 levels
     /// Added to the ray-cone level of detail of every texture. Negative is sharper and noisier.
     float lod_bias;

@@ -32,7 +32,7 @@ impl Known {
 pub struct Changes {
     /// 0 where a pixel's vertex sends what it sent before.
     pub change: ImageHandle,
-    /// w: above 0 where there is such a vertex.
+    /// w: above 0 where there is such a vertex, below it where a light is seen instead.
     pub vertices: ImageHandle,
 }
 

@@ -8,6 +8,8 @@ pub(super) const TECHNIQUE: Technique = Technique {
     defaults: &[
         ("paths.scramble", "tile"),
         ("lights.sole", "apart"),
+        // One sample of a caustic is a spot on the picture for as long as its cell remembers.
+        ("paths.regularize", "0.45"),
         ("frame.jitter", "on"),
         // Frames at several offsets are sharper than one: half a level finer, as antialiasing over frames allows.
         ("textures.lod_bias", "-0.5"),
