@@ -258,6 +258,12 @@ struct Parameters {
     //@ hpsf.smooth_few 64 0..10000 samples
     /// In those passes a mean over n samples counts as so much over n times noisier than it seems, for few samples say little about how noisy they are.
     float hpsf_smooth_few;
+    //@ hpsf.smooth_indirect_few 64 0..10000 samples
+    /// The same for indirect light.
+    float hpsf_smooth_indirect_few;
+    //@ hpsf.smooth_specular_few 8 0..10000 samples
+    /// The same for what other lobes reflect.
+    float hpsf_smooth_specular_few;
     //@ hpsf.smooth_noise 1.6 0.01..1000 standard deviations
     /// Largest difference that the later of these passes take for noise. More: less noise, blurrier shadows.
     float hpsf_smooth_noise;

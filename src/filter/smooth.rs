@@ -9,9 +9,9 @@ use crate::gpu::{GpuError, vk};
 use crate::paths::gbuffer::GBuffer;
 use crate::paths::terms::{FilterVertex, Terms};
 
-/// Specialization constants: pixels between taps, and layers whose few samples are taken to be noisier than they seem.
+/// Specialization constants: pixels between taps, and for each layer the samples that are few, of which noise is not known well.
 const STEP: u32 = 224;
-const BLIND: u32 = 233;
+const FEW: [u32; MOST_LAYERS] = [232, 233, 236];
 
 /// Passes at most, each with taps twice as far apart as the one before.
 const PASSES: [&str; 5] = ["smooth 1", "smooth 2", "smooth 3", "smooth 4", "smooth 5"];
@@ -23,11 +23,13 @@ const NOISY: [&str; MOST_LAYERS] = ["noisy_0", "noisy_1", "noisy_2"];
 const SAMPLES: [&str; MOST_LAYERS] = ["samples_0", "samples_1", "samples_2"];
 const SMOOTHED: [&str; MOST_LAYERS] = ["smoothed_0", "smoothed_1", "smoothed_2"];
 
-/// How often, and how many of these are blind. Direct light has edges soon; what fewer samples find takes more of them to be known by.
+/// How often, how many of these are blind, and how many samples they take for few. Direct light has edges soon; what fewer samples find takes
+/// more of them to be known by.
 #[derive(Debug, Clone, Copy)]
 pub struct Passes {
     pub count: usize,
     pub blind: usize,
+    pub few: f32,
 }
 
 /// The mean over samples, w being its variance, and how many samples it is over.
@@ -70,16 +72,16 @@ pub fn add(frame: &mut FrameBuilder, vertex: &FilterVertex, mut layers: [Option<
             break;
         }
         let mut pass = frame.pass(name, STEMS[count - 1]).constant(STEP, 1 << i);
-        let mut blind = 0;
         let going_on = layers.iter_mut().flatten().zip(targets.into_iter().flatten()).filter(|(layer, _)| goes_on(layer));
         for (place, (layer, targets)) in going_on.enumerate() {
             // They take turns, and the last pass writes the first one.
             let target = targets[(layer.passes.count - i + 1) % 2];
             pass = pass.reads(NOISY[place], layer.noisy.mean).reads(SAMPLES[place], layer.noisy.samples).writes(SMOOTHED[place], target);
-            blind |= u32::from(i < layer.passes.blind) << place;
+            let few = if i < layer.passes.blind { layer.passes.few } else { 0.0 };
+            pass = pass.constant(FEW[place], few.to_bits());
             layer.noisy.mean = target;
         }
-        pass.constant(BLIND, blind).reads("filter_position", vertex.position).reads("filter_normal", vertex.normal).add()?;
+        pass.reads("filter_position", vertex.position).reads("filter_normal", vertex.normal).add()?;
     }
     Ok(())
 }

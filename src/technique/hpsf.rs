@@ -132,8 +132,8 @@ fn filter_specular(
 }
 
 fn smoothing(options: PassOptions, key: &str) -> Passes {
-    let number = |key: &str| options.parameters.number(key) as usize;
-    Passes { count: number(key), blind: number(&format!("{key}_blind")) }
+    let number = |end: &str| options.parameters.number(&format!("{key}{end}"));
+    Passes { count: number("") as usize, blind: number("_blind") as usize, few: number("_few") as f32 }
 }
 
 fn table_options(options: PassOptions, part: Part) -> Options {

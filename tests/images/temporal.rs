@@ -73,12 +73,13 @@ fn a_moving_lamp_leaves_no_trail() {
 }
 
 /// Where retraced paths tell of no change, history is as long and as whole as if nothing could move: a lamp's too, and that of metals, some of whose
-/// paths meet nothing but lamps.
+/// paths meet nothing but lamps. Which keys get slots is not left to chance.
 #[test]
 fn what_stands_still_keeps_its_history_where_something_may_move() {
     let gpu = common::gpu();
     let found = |scene: &str, values: &[(&str, &str)]| {
         let mut settings = Settings { all_effects: true, ..settings(64, 36) };
+        set(&mut settings, &[("hpsf.insertion", "ordered")]);
         set(&mut settings, values);
         render_frames(&gpu, &builtin(scene), &settings, "hpsf+", 12).picture().unwrap()
     };

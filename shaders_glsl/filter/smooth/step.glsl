@@ -6,7 +6,7 @@
 // step takes those taps for similar whose colour differs by no more than noise does, so that what cells know better over frames is
 // smoothed less. The first step knows no variance yet but each pixel's own, from one sample: it takes all taps, and
 // moves no pixel by more than noise explains. Weights by the colour of few samples would keep the very noise that is to go, so the
-// BLIND steps after it allow for more (hpsf.smooth_few).
+// blind steps after it allow for more, as much more as their FEW says.
 //
 // A mean of taps that all lie on one side is that of a place beside the pixel: rims of walls, where light changes most, would take on the
 // brightness of their middles. So a plane is fitted to the taps, and read where the pixel is (local linear regression: Cleveland 1979;
@@ -36,8 +36,10 @@ layout(local_size_x = 8, local_size_y = 4) in;
 
 /// Pixels between taps.
 layout(constant_id = 224) const int STEP = 1;
-/// Layers whose few samples do not tell how noisy they are, a bit each.
-layout(constant_id = 233) const uint BLIND = 0;
+/// Means over fewer samples than this do not tell how noisy they are, for each layer; 0: all do.
+layout(constant_id = 232) const float FEW_0 = 0.0;
+layout(constant_id = 233) const float FEW_1 = 0.0;
+layout(constant_id = 236) const float FEW_2 = 0.0;
 
 /// w: view-plane distance; 0 where there is no filter vertex.
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D filter_position;
@@ -164,8 +166,8 @@ struct Layer {
 
 /// Later steps have their variance from the more neighbours, and are the less blind.
 float noise_at(int layer, ivec2 pixel) {
-    bool blind = (BLIND >> layer & 1u) != 0u;
-    float few = blind ? parameters.hpsf_smooth_few * 4.0 / (float(STEP * STEP) * float(max(samples_at(layer, pixel), 1u))) : 0.0;
+    float few = layer == 0 ? FEW_0 : layer == 1 ? FEW_1 : FEW_2;
+    few = few > 0.0 ? few * 4.0 / (float(STEP * STEP) * float(max(samples_at(layer, pixel), 1u))) : 0.0;
     return parameters.hpsf_smooth_noise * parameters.hpsf_smooth_noise * (1.0 + few * few);
 }
 
