@@ -246,7 +246,7 @@ struct Parameters {
     //@ hpsf.smooth_angle 60 1..180 degrees
     /// Largest angle between the normals of vertices that it takes for similar.
     float hpsf_smooth_angle;
-    //@ hpsf.smooth_blind 1 1..5 passes
+    //@ hpsf.smooth_blind 2 1..5 passes
     /// How many of these passes take little account of colour while samples are few. More: less noise, and less light lost with bright samples that nothing around resembles; blurrier shadows in the first frames.
     uint hpsf_smooth_blind;
     //@ hpsf.smooth_indirect_blind 3 1..5 passes
@@ -255,7 +255,7 @@ struct Parameters {
     //@ hpsf.smooth_specular_blind 3 1..5 passes
     /// The same for what other lobes reflect.
     uint hpsf_smooth_specular_blind;
-    //@ hpsf.smooth_few 64 0..10000 samples
+    //@ hpsf.smooth_few 12 0..10000 samples
     /// In those passes a mean over n samples counts as so much over n times noisier than it seems, for few samples say little about how noisy they are.
     float hpsf_smooth_few;
     //@ hpsf.smooth_indirect_few 64 0..10000 samples

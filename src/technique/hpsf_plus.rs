@@ -8,6 +8,8 @@ pub(super) const TECHNIQUE: Technique = Technique {
     defaults: &[
         ("paths.scramble", "tile"),
         ("lights.sole", "apart"),
+        // Where lamps are many: what better choices save in noise, more samples would cost more for.
+        ("lights.candidates", "32"),
         // One sample of a caustic is a spot on the picture for as long as its cell remembers.
         ("paths.regularize", "0.45"),
         ("frame.jitter", "on"),
