@@ -73,18 +73,19 @@ fn a_moving_lamp_leaves_no_trail() {
 }
 
 /// Where retraced paths tell of no change, history is as long and as whole as if nothing could move: a lamp's too, and that of metals, some of whose
-/// paths meet nothing but lamps. Which keys get slots is not left to chance.
+/// paths meet nothing but lamps. Which keys get slots is not left to chance, and smoothing hardly spreads the few pixels that nobody speaks for.
+/// Without what lamps and metals say, 97 % of cornell and 79 % of the metal are the same.
 #[test]
 fn what_stands_still_keeps_its_history_where_something_may_move() {
     let gpu = common::gpu();
     let found = |scene: &str, values: &[(&str, &str)]| {
         let mut settings = Settings { all_effects: true, ..settings(64, 36) };
-        set(&mut settings, &[("hpsf.insertion", "ordered")]);
+        set(&mut settings, &[("hpsf.insertion", "ordered"), ("hpsf.smooth_specular", "1")]);
         set(&mut settings, values);
         render_frames(&gpu, &builtin(scene), &settings, "hpsf+", 12).picture().unwrap()
     };
     for scene in ["cornell", "material-glossy"] {
-        let [found, whole] = [&[][..], &[("temporal.clamp", "0"), ("temporal.moving", "64")]].map(|values| found(scene, values));
+        let [found, whole] = [&[][..], &[("temporal.clamp", "100"), ("temporal.moving", "64")]].map(|values| found(scene, values));
         let seen = |pixel: &[f32; 3]| pixel.iter().sum::<f32>() > 0.0;
         let pairs = || found.pixels.iter().zip(&whole.pixels).filter(|(a, _)| seen(a));
         let (same, all) = (pairs().filter(|(a, b)| a == b).count(), pairs().count());
