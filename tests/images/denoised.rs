@@ -1,8 +1,8 @@
 //! What `hpsf+` is for: few frames at one sample per pixel.
 
 use crate::common;
-use crate::common::render::{builtin, render, render_frames, set, settings};
-use pathspace::display::ToneMapping;
+use crate::common::render::{builtin, output, render, render_frames, set, settings};
+use pathspace::display::{Image, ToneMapping};
 use pathspace::metrics::accuracy::{Reference, Shot, accuracy};
 
 /// FLIP and relMSE of what hpsf+ makes of so many frames of cornell, 128x72, over those of as many samples without a filter; against 256.
@@ -38,4 +38,35 @@ fn one_frame_of_hpsf_plus_has_little_of_the_noise() {
 fn sixteen_frames_of_hpsf_plus_are_better_than_as_many_samples() {
     let [flip, relmse] = error_over_unfiltered(16);
     assert!(flip < 0.93 && relmse < 0.22, "FLIP {flip}, relMSE {relmse}");
+}
+
+/// Sum of the differences between a pixel and the one to the left of it.
+fn roughness(image: &Image) -> f64 {
+    let pairs = (0..image.pixels.len()).filter(|i| i % image.width as usize != 0);
+    let difference = |i: usize| (0..3).map(|c| f64::from((image.pixels[i][c] - image.pixels[i - 1][c]).abs())).sum::<f64>();
+    pairs.map(difference).sum()
+}
+
+/// Direct light, indirect light and reflections take means over fewer samples than so many for noisier than they seem, each for itself.
+#[test]
+fn what_few_samples_are_smooths_the_light_that_it_is_said_of_and_no_other() {
+    let gpu = common::gpu();
+    let names = ["smoothed_direct", "smoothed_indirect", "smoothed_specular"];
+    let smoothed = |values: &[(&str, &str)]| {
+        let mut settings = settings(64, 36);
+        settings.outputs = names.map(str::to_owned).to_vec();
+        set(&mut settings, &[("hpsf.insertion", "ordered")]);
+        set(&mut settings, values);
+        let renderer = render_frames(&gpu, &builtin("hall"), &settings, "hpsf+", 1);
+        names.map(|name| output(&renderer, name))
+    };
+    let plain = smoothed(&[]);
+    for (of, key) in ["hpsf.smooth_few", "hpsf.smooth_indirect_few", "hpsf.smooth_specular_few"].into_iter().enumerate() {
+        let [all, none] = ["1000", "0.1"].map(|samples| smoothed(&[(key, samples)]));
+        for other in (0..names.len()).filter(|&other| other != of) {
+            assert!(all[other].pixels == plain[other].pixels, "{key}: {}", names[other]);
+        }
+        let [all, none] = [all, none].map(|images| roughness(&images[of]));
+        assert!(all < 0.95 * none, "{key}: {all}, {none}");
+    }
 }
