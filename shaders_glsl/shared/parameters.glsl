@@ -255,7 +255,7 @@ struct Parameters {
     //@ hpsf.smooth_specular_blind 3 1..5 passes
     /// The same for what other lobes reflect.
     uint hpsf_smooth_specular_blind;
-    //@ hpsf.smooth_few 12 0..10000 samples
+    //@ hpsf.smooth_few 4 0..10000 samples
     /// In those passes a mean over n samples counts as so much over n times noisier than it seems, for few samples say little about how noisy they are.
     float hpsf_smooth_few;
     //@ hpsf.smooth_indirect_few 64 0..10000 samples

@@ -6,10 +6,11 @@
 // step takes those taps for similar whose colour differs by no more than noise does, so that what cells know better over frames is
 // smoothed less. The first step knows no variance yet but each pixel's own, from one sample: it takes all taps, and
 // moves no pixel by more than noise explains. Weights by the colour of few samples would keep the very noise that is to go, so the
-// blind steps after it allow for more, as much more as their FEW says. Measured (hpsf+, 256x144): direct light wants two such steps of 12
+// blind steps after it allow for more, as much more as their FEW says. Measured (hpsf+, 256x144): direct light wants two such steps of 4
 // samples, and what other lobes reflect 8, not 64 as indirect light, or shadows and reflections blur more than noise goes. FLIP of the first
-// frame .173 for .182 in the hall, .148 for .155 on the staircase, .068 for .071 in Sponza, .049 for .048 on cornell; of the 16th .098 for .103,
-// .074 for .078, .040 for .040, .022 for .022. Of 4, reflections are noisier in the 16th; of 8, direct light is blurrier in Sponza's.
+// frame .176 for .182 in the hall, .151 for .155 on the staircase, .069 for .071 in Sponza, .048 on cornell either way; of the 16th .098 for
+// .103, .075 for .078, .040 and .022 either way. With 12 samples of direct light first frames are better yet (.173, .148, .068), but shadows that
+// are known already blur: cornell's 16th has 1.2 % more.
 //
 // A mean of taps that all lie on one side is that of a place beside the pixel: rims of walls, where light changes most, would take on the
 // brightness of their middles. So a plane is fitted to the taps, and read where the pixel is (local linear regression: Cleveland 1979;
